@@ -1,7 +1,7 @@
 # What the nodelets and the programs share (src/ros), and the nodelets.
 file(GLOB ros_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/ros/*.cpp)
 add_library(uav_landing_ros SHARED ${ros_sources})
-target_include_directories(uav_landing_ros PUBLIC ${PROJECT_SOURCE_DIR}/src/ros)
+target_include_directories(uav_landing_ros PUBLIC ${PROJECT_SOURCE_DIR}/src/ros ${PROJECT_SOURCE_DIR}/src/core)
 target_include_directories(uav_landing_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(uav_landing_ros PUBLIC uav_landing_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)
 add_dependencies(uav_landing_ros ${PROJECT_NAME}_generate_messages_cpp)

@@ -77,8 +77,8 @@ class OverlayNodelet : public StageNodelet {
     cv::Mat picture;
     {
       const ScopedTimer timer(timings, "overlay");
-      picture = drawOverlay(*stereo_rig_, (*view)->image, toResult(stereo), toResult(approach),
-                            toResult(landing), parameters_);
+      picture = drawOverlay(*stereo_rig_, (*view)->image,
+                            {toResult(stereo), toResult(approach), toResult(landing)}, parameters_);
     }
     report_.served(left->header.stamp, timings.total(), "");
     publisher_.publish(

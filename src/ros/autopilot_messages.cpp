@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "aircraft_tilt.h"
+#include "geometry/cross_matrix.h"
 #include "landing_messages.h"
-#include "uav_landing/geometry/cross_matrix.h"
 
 namespace uav_landing {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "height/height_limit.h"
 #include "pose_covariance.h"
-#include "uav_landing/height/height_limit.h"
 
 namespace uav_landing {
 namespace {

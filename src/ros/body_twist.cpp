@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "uav_landing/geometry/cross_matrix.h"
+#include "geometry/cross_matrix.h"
 
 namespace uav_landing {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "image/input/grey_range.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/image/grey_range.h"
 
 namespace uav_landing {
 

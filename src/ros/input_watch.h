@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/integrity/stamp_order.h"
+#include "integrity/stamp_order.h"
 
 namespace uav_landing {
 

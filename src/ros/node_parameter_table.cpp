@@ -4,7 +4,7 @@
 
 #include "autopilot_messages.h"
 #include "node_parameters.h"
-#include "uav_landing/parameters/table_writer.h"
+#include "parameters/table_writer.h"
 
 namespace uav_landing {
 

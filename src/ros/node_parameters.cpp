@@ -8,7 +8,7 @@
 
 #include "autopilot_messages.h"
 #include "parameter_names.h"
-#include "uav_landing/parameters/section_loader.h"
+#include "parameters/section_loader.h"
 
 namespace uav_landing {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "uav_landing/image/row_alternation.h"
+#include "image/input/row_alternation.h"
 
 namespace uav_landing {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "body_pose.h"
-#include "uav_landing/geometry/cross_matrix.h"
+#include "geometry/cross_matrix.h"
 
 namespace uav_landing {
 namespace {

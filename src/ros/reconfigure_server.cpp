@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "uav_landing/parameters/out_of_range.h"
+#include "parameters/out_of_range.h"
 
 namespace uav_landing {
 namespace {

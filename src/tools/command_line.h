@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "parameters/section_loader.h"
 #include "uav_landing/image/rig_masks.h"
 #include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/parameters/parameters.h"
-#include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
 

@@ -128,7 +128,7 @@ void fuzzImagePair(const uint8_t* data, size_t size) {
     }
     const Pipeline::Output& output = pipeline.process(stamp, left, right, 0);
     expectHonest(output.landing);
-    if (draw) drawOverlay(scene.rig, output.left, output.stereo, output.approach, output.landing, {});
+    if (draw) drawOverlay(scene.rig, output.left, {output.stereo, output.approach, output.landing}, {});
     stamp += input.byte() < 220 ? kStep : input.number(kStep);
   }
 }

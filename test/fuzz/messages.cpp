@@ -62,7 +62,7 @@ void useResult(const ApproachMessages& messages, const LandingResult& camera) {
               path.runwayWidth());
   static const cv::Mat grey(messages.rig.size.height, messages.rig.size.width, CV_8UC1, cv::Scalar(100));
   static int turn = 0;
-  if (++turn % 64 == 0) drawOverlay(messages.rig, grey, stereo, approach, camera, {});
+  if (++turn % 64 == 0) drawOverlay(messages.rig, grey, {stereo, approach, camera}, {});
 }
 
 void expectHonest(const LandingResult& result) {

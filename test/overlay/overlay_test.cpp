@@ -42,7 +42,7 @@ double enlarged(double pixel) { return 2 * pixel + 0.5; }
 
 class Overlay : public ::testing::Test {
  protected:
-  cv::Mat draw() const { return drawOverlay(rig, image, stereo, approach, landing, twice()); }
+  cv::Mat draw() const { return drawOverlay(rig, image, {stereo, approach, landing}, twice()); }
 
   const StereoRig rig = makeRig();
   const cv::Mat image{rig.size, CV_8U, cv::Scalar(kGrey)};

@@ -15,6 +15,13 @@ namespace uav_landing {
 /// the result at least 640 pixels wide.
 int overlayScale(int width, const OverlayParameters& parameters);
 
+/// What the stages found in a pair.
+struct PairFindings {
+  const StereoDepthResult& stereo;
+  const ApproachAngleResult& approach;
+  const LandingResult& landing;
+};
+
 /// The left image with everything that was found:
 /// - lines, those through the vanishing point bright and others dim, and the vanishing point;
 /// - horizons of the stereo plane and of the fused ground normal, and the focus of expansion;
@@ -22,8 +29,7 @@ int overlayScale(int width, const OverlayParameters& parameters);
 ///
 /// Below the image is a strip of instruments: height, sink rate, approach angle, attitude, status and reason.
 /// The image itself is the top left (scale * size) part.
-cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepthResult& stereo,
-                    const ApproachAngleResult& approach, const LandingResult& landing,
+cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const PairFindings& found,
                     const OverlayParameters& parameters);
 
 /// The lines of one view (the paper's Fig. 4).

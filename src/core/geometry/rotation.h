@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "uav_landing/geometry/cross_matrix.h"
+#include "geometry/cross_matrix.h"
 
 namespace uav_landing {
 

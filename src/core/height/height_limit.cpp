@@ -1,4 +1,4 @@
-#include "uav_landing/height/height_limit.h"
+#include "height/height_limit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -14,14 +14,14 @@ constexpr int kMostLeaps = 3;    // jumps in a row of a direction that is not be
 
 }  // namespace
 
-void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen, double margin,
-                            bool path_known, const Eigen::Vector3d& normal,
+void RunwayIdentity::follow(double stamp, const Seen& seen, const Eigen::Vector3d& normal,
                             const ApproachAngleResult::Motion& turn) {
   const double seconds = advance(stamp);
   other_probability_ = 1;
-  const Eigen::Vector3d across = normal.cross(seen.direction).normalized();
-  const bool leaps = memory_.leaps(stamp, seen, across, turn);
-  if (!seen.direction.allFinite()) {
+  const Eigen::Vector3d& direction = seen.direction.direction;
+  const Eigen::Vector3d across = normal.cross(direction).normalized();
+  const bool leaps = memory_.leaps(stamp, seen.direction, across, turn);
+  if (!direction.allFinite()) {
     leaps_ = 0;
     margin_ *= std::exp(-seconds / kFade);
     return;
@@ -29,16 +29,16 @@ void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen
   if (leaps) {
     if (++leaps_ > kMostLeaps) {
       *this = RunwayIdentity();
-      follow(stamp, seen, margin, path_known, normal, turn);
+      follow(stamp, seen, normal, turn);
     }
     return;
   }
   leaps_ = 0;
   if (memory_.agreements() == 0) pairs_ = margins_ = 0;  // another direction than in the pair before
-  follow(seconds, margin, path_known);
+  average(seconds, seen.margin, seen.path_known);
 }
 
-void RunwayIdentity::follow(double seconds, double margin, bool path_known) {
+void RunwayIdentity::average(double seconds, double margin, bool path_known) {
   if (path_known && !path_known_) margins_ = 0;
   path_known_ = path_known_ || path_known;
   if (margin == 0 && pairs_ >= kConfirmations) {

@@ -17,18 +17,22 @@ class RunwayIdentity {
   /// Pairs in a row that must agree.
   static constexpr int kConfirmations = 3;
 
-  /// Call it after each pair. seen: not finite when no runway is in view. margin: 0 when no runway is known
-  /// to be there. path_known: the margin contains what the path of flight says; margins before the first such
-  /// one are forgotten. normal: of the ground, unit. turn: since the pair before.
-  void follow(double stamp, const VanishingMemory::Direction& seen, double margin, bool path_known,
-              const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn);
+  struct Seen {
+    VanishingMemory::Direction direction;  ///< not finite when no runway is in view
+    double margin;                         ///< 0 when no runway is known to be there
+    /// The margin contains what the path of flight says. Margins before the first such one are forgotten.
+    bool path_known;
+  };
+  /// Call it after each pair. normal: of the ground, unit. turn: since the pair before.
+  void follow(double stamp, const Seen& seen, const Eigen::Vector3d& normal,
+              const ApproachAngleResult::Motion& turn);
   /// A pair about which nothing is known.
   void skip(double stamp);
   /// Probability that the direction of the last pair is not the runway's, 0 to 1.
   double otherProbability() const { return other_probability_; }
 
  private:
-  void follow(double seconds, double margin, bool path_known);
+  void average(double seconds, double margin, bool path_known);
   double advance(double stamp);
 
   VanishingMemory memory_;

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/stamp_order.h"
+#include "integrity/stamp_order.h"
 
 #include <cmath>
 

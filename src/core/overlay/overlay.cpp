@@ -83,9 +83,9 @@ int overlayScale(int width, const OverlayParameters& parameters) {
   return std::max(1, (kReadableWidth + width - 1) / width);
 }
 
-cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepthResult& stereo,
-                    const ApproachAngleResult& approach, const LandingResult& landing,
+cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const PairFindings& found,
                     const OverlayParameters& parameters) {
+  const auto& [stereo, approach, landing] = found;
   Canvas canvas(left, overlayScale(left.cols, parameters), kBrightness);
   drawPoints(canvas, stereo.points);
   drawLines(canvas, approach.left.lines);

@@ -5,7 +5,7 @@
 
 #include "parameters/moved_parameters.h"
 #include "parameters/parameter_sections.h"
-#include "uav_landing/parameters/table_writer.h"
+#include "parameters/table_writer.h"
 
 namespace uav_landing {
 Expected<Parameters> parseParameters(const std::string& yaml_text, const std::string& name) {

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <vector>
 
+#include "parameters/section_loader.h"
 #include "uav_landing/base/failure.h"
-#include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "uav_landing/parameters/section_loader.h"
+#include "parameters/section_loader.h"
 
 #include <algorithm>
 #include <numeric>

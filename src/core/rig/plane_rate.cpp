@@ -1,6 +1,6 @@
 #include "rig/plane_rate.h"
 
-#include "uav_landing/geometry/cross_matrix.h"
+#include "geometry/cross_matrix.h"
 
 namespace uav_landing {
 namespace {

@@ -121,7 +121,7 @@ struct ApproachAngleStage::Implementation {
     }
     straightenPlan(result);
     last_normal = result.n;
-    followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), normal, result);
+    followMotion(left, has_plane ? &stereo : nullptr, repeated(stereo), normal, result);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
     } else {
@@ -131,9 +131,8 @@ struct ApproachAngleStage::Implementation {
     if (repeated(stereo)) {
       result.runway.failure = result.runway.threshold_failure = result.step.failure;
     } else {
-      result.runway =
-          runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown,
-                         rowsOf(stamp, model.rig.K(), model.left_times));
+      result.runway = runway.process({left, model.left_mask, rowsOf(stamp, model.rig.K(), model.left_times)},
+                                     result, direction, has_plane ? stereo.plane.height() : kUnknown);
     }
     return result;
   }
@@ -180,8 +179,10 @@ struct ApproachAngleStage::Implementation {
   }
 
   void identify(double stamp, const RunwayDirection& direction, ApproachAngleResult& result) {
-    identity.follow(stamp, {result.vanishing_direction, result.vanishing_covariance},
-                    direction.combined ? direction.combined->runway_margin : 0, last.path.has_value(),
+    identity.follow(stamp,
+                    {{result.vanishing_direction, result.vanishing_covariance},
+                     direction.combined ? direction.combined->runway_margin : 0,
+                     last.path.has_value()},
                     result.n, result.step);
     result.other_runway_probability = identity.otherProbability();
     const Eigen::Vector3d& t = result.step.translation_over_height;
@@ -288,8 +289,9 @@ struct ApproachAngleStage::Implementation {
     return parameters.use_stereo && stereo.left_repeated;
   }
 
-  void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo, bool repeated,
+  void followMotion(const cv::Mat& left, const StereoDepthResult* stereo, bool repeated,
                     const DoubtByReadout& normal, ApproachAngleResult& result) {
+    const double stamp = result.stamp;
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(model.rig, *stereo) : cornersWithoutStereo(left, result.n);
     const StepConditions conditions{

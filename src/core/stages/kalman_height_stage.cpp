@@ -59,6 +59,15 @@ struct Look {
   MeasuredHeight by_ground;
 };
 
+/// A pair with what was found and decided about it.
+struct Judged {
+  const PairInput& in;
+  const Look& look;
+  const MeasuredHeight& measured;
+  const PairVerdict& pair;
+  const TrackVerdict& post;
+};
+
 }  // namespace
 
 struct KalmanHeightStage::Implementation {
@@ -116,7 +125,7 @@ struct KalmanHeightStage::Implementation {
     reportHeight(measured, pair, post, result);
     PairTests tests = pair.tests;
     post.addTo(tests);
-    const Failure waiting = guardHeight(in, look, measured, pair, post, tests, result);
+    const Failure waiting = guardHeight({in, look, measured, pair, post}, tests, result);
 
     if (!in.repeated()) parts->doubt.update(in, ground, tests);
     reportAngle(in, ground, parts->doubt, pair.velocity, result);
@@ -125,7 +134,8 @@ struct KalmanHeightStage::Implementation {
     reportDirections(in, ground, pair, result);
     // The velocity's scale is that of the height. It waits with it.
     if (!waiting && motionBelieved(ground, pair))
-      reportTwist(believedTwist(rig, in, ground, pair, result, doubtOfStep(in, ground)), result);
+      reportTwist(believedTwist(in, pair, scaleOfStep(rig, in, ground, result), doubtOfStep(in, ground)),
+                  result);
     result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");
     reportPosition(in, ground, result);
@@ -160,12 +170,12 @@ struct KalmanHeightStage::Implementation {
   }
 
   // Tests the published height and bounds its error. Returns the reason when the height has to wait.
-  Failure guardHeight(const PairInput& in, const Look& look, const MeasuredHeight& measured,
-                      const PairVerdict& pair, const TrackVerdict& post, PairTests& tests,
-                      LandingResult& result) {
+  Failure guardHeight(const Judged& judged, PairTests& tests, LandingResult& result) {
     if (!parameters.integrity_monitor) return {};
+    const auto& [in, look, measured, pair, post] = judged;
     const MotionDoubt doubt = doubtOfStep(in, look.ground);
-    refuseHeight(result, parts->sink_rate.check(in, look.ground, measured.errors, post, doubt, tests));
+    refuseHeight(result,
+                 parts->sink_rate.check(in, look.ground, {post.filter, measured.errors}, doubt, tests));
     const Failure waiting = parts->recovery.follow(in.T, pair, tests, post);
     refuseHeight(result, waiting);
     parts->below.follow(in, look.ground, measured, pair.leftOut(), post);
@@ -201,7 +211,8 @@ struct KalmanHeightStage::Implementation {
   void reportPosition(const PairInput& in, const Ground& ground, LandingResult& result) {
     const double bend = ground.surface.bend;
     parts->position.process(in.approach, ground.positionNormalOr(in.approach.n), in.turn,
-                            result.height_valid ? result.height - bend : kUnknown, result.height_variance,
+                            {result.height_valid ? result.height - bend : kUnknown, result.height_variance,
+                             result.height_protection_level},
                             result);
     Eigen::Vector3d direction = in.approach.vanishing_direction;
     if (result.yaw_failure) direction.setConstant(kUnknown);

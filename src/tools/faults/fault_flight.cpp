@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "integrity/stamp_order.h"
 #include "uav_landing/geometry/camera_pair.h"
-#include "uav_landing/integrity/stamp_order.h"
 #include "uav_landing/pipeline.h"
 
 namespace uav_landing {

@@ -93,7 +93,7 @@ std::optional<Eigen::Vector3d> onGround(const Photograph& photo, const Eigen::Ve
   keepBelowHorizon(everywhere, K, normal, ground);
   const HeadingGate gate(K, normal, parameters.max_yaw_deg * kDegree);
   const std::vector<LineSegment> lines =
-      withoutStripeBias(photo.image, ground, findLines(photo.image, ground, parameters, &gate));
+      withoutStripeBias(photo.image, ground, findLines({photo.image, ground}, parameters, &gate));
   const double variance = stddev * stddev + std::pow(parameters.runway_slope_stddev_deg * kDegree, 2);
   const RunwayPrior prior{normal, variance * Eigen::Matrix3d::Identity(), {}, {}, {}};
   const Expected<RunwayChoice> choice = findRunwayHypothesis(lines, K, parameters, prior);

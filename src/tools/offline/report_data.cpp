@@ -47,8 +47,8 @@ void ReportData::take(const ProcessedPair& pair) {
   cv::Mat picture;
   {
     const ScopedTimer timer(timings, "overlay");
-    picture = drawOverlay(pair.rig, pair.output.left, pair.output.stereo, pair.output.approach,
-                          pair.output.landing, overlay_);
+    picture = drawOverlay(pair.rig, pair.output.left,
+                          {pair.output.stereo, pair.output.approach, pair.output.landing}, overlay_);
   }
   std::vector<double> row;
   for (const auto& [part, ms] : timings.parts()) {

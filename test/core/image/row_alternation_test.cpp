@@ -1,4 +1,4 @@
-#include "uav_landing/image/row_alternation.h"
+#include "image/input/row_alternation.h"
 
 #include <gtest/gtest.h>
 

@@ -27,7 +27,7 @@ struct Flight {
     turn.covariance = std::pow(0.01 * kDegree, 2) * Matrix6d::Identity();
     stamp += kStep;
     const Eigen::Matrix3d covariance = std::pow(0.05 * kDegree, 2) * Eigen::Matrix3d::Identity();
-    identity.follow(stamp, {direction, covariance}, margin, path_known, Eigen::Vector3d::UnitY(), turn);
+    identity.follow(stamp, {{direction, covariance}, margin, path_known}, Eigen::Vector3d::UnitY(), turn);
   }
   void see(double aside_deg, double margin) {
     see({std::sin(aside_deg * kDegree), 0, std::cos(aside_deg * kDegree)}, margin);

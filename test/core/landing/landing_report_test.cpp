@@ -263,7 +263,8 @@ TEST(LandingReport, WhatRefusesAPairRefusesItsAngle) {
 }
 
 CameraTwist twistOf(const Pair& pair, const PairVerdict& verdict, const MotionDoubt& doubt = {}) {
-  return believedTwist(usualRig(), pair.input(), pair.ground, verdict, resultAt(10), doubt);
+  const StepScale scale = scaleOfStep(usualRig(), pair.input(), pair.ground, resultAt(10));
+  return believedTwist(pair.input(), verdict, scale, doubt);
 }
 
 TEST(LandingReport, TheVelocityIsTheStepTimesTheHeightAboveThePlaneAhead) {

@@ -51,8 +51,8 @@ class Flight {
     if (!motion_known) approach.step.failure = {Reason::kMotionInconsistent, ""};
     stamp_ += kStep;
     tests = before;
-    return watch_.check(test::pairOf(stereo, approach), test::groundOf(stereo.plane), errors,
-                        test::trackingAt(filter), doubt, tests);
+    return watch_.check(test::pairOf(stereo, approach), test::groundOf(stereo.plane), {filter, errors}, doubt,
+                        tests);
   }
 
   SinkRateWatch watch_{KalmanHeightParameters()};

@@ -92,12 +92,12 @@ void expectEdges(const std::vector<LineSegment>& lines, const Polygon& polygon, 
 
 TEST(FindLines, AreWithinATwentiethOfAPixel) {
   const auto polygons = runway();
-  expectEdges(findLines(render(polygons), allGround(), {}), polygons[0], 0.05);
+  expectEdges(findLines({render(polygons), allGround()}, {}), polygons[0], 0.05);
 }
 
 TEST(FindLines, AreWithinATwentiethOfAPixelWithNoiseAndBlur) {
   const auto polygons = runway();
-  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), {});
+  const std::vector<LineSegment> lines = findLines({render(polygons, 2, 0.8), allGround()}, {});
   expectEdges(lines, polygons[0], 0.05);
   EXPECT_EQ(lines.size(), 4U);
 }
@@ -108,7 +108,7 @@ TEST(FindLines, AreAccurateAtAnyAngleAndPlace) {
         across(-along.y, along.x);
     const Polygon bar{centre - 120 * along - 20 * across, centre + 120 * along - 20 * across,
                       centre + 120 * along + 20 * across, centre - 120 * along + 20 * across};
-    const std::vector<LineSegment> lines = findLines(render({bar}, 1), allGround(), {});
+    const std::vector<LineSegment> lines = findLines({render({bar}, 1), allGround()}, {});
     for (const int side : {0, 2}) {
       const LineSegment* line = nearest(lines, bar[side], bar[side + 1]);
       ASSERT_NE(line, nullptr);
@@ -123,7 +123,7 @@ TEST(FindLines, HoughTransformsFindTheSameEdges) {
     ApproachAngleParameters parameters;
     parameters.hough_method = method;
     const auto polygons = runway();
-    const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
+    const std::vector<LineSegment> lines = findLines({render(polygons, 2, 0.8), allGround()}, parameters);
     expectEdges(lines, polygons[0], 0.05);
     EXPECT_EQ(lines.size(), 4U);
   }
@@ -134,7 +134,7 @@ TEST(FindLines, StandardHoughCutsALineWhereTheEdgeEnds) {
   parameters.hough_method = HoughMethod::kStandard;
   const std::vector<Polygon> dashes{{{300.3, 150}, {312.3, 150}, {312.3, 250}, {300.3, 250}},
                                     {{300.3, 300}, {312.3, 300}, {312.3, 400}, {300.3, 400}}};
-  const std::vector<LineSegment> lines = findLines(render(dashes, 1), allGround(), parameters);
+  const std::vector<LineSegment> lines = findLines({render(dashes, 1), allGround()}, parameters);
   int upright = 0;
   for (const LineSegment& line : lines) {
     if (std::abs(line.b.x() - line.a.x()) > 5) continue;
@@ -146,7 +146,7 @@ TEST(FindLines, StandardHoughCutsALineWhereTheEdgeEnds) {
 
 TEST(FindLines, BothEdgesOfAThinStripeAreFoundApart) {
   const std::vector<Polygon> stripe{{{310.2, 150.1}, {312.3, 150.1}, {263.3, 440.2}, {261.1, 440.2}}};
-  const std::vector<LineSegment> lines = findLines(render(stripe, 1), allGround(), {});
+  const std::vector<LineSegment> lines = findLines({render(stripe, 1), allGround()}, {});
   const LineSegment* left = nearest(lines, stripe[0][0], stripe[0][3]);
   const LineSegment* right = nearest(lines, stripe[0][1], stripe[0][2]);
   ASSERT_NE(left, nullptr);
@@ -164,7 +164,7 @@ TEST(FindLines, PiecesOfOneEdgeThatAreFarApartAreLinesOfTheirOwn) {
   const std::vector<cv::Rect> bars = {{200, 105, 12, 55}, {200, 200, 12, 130}, {200, 375, 12, 70}};
   cv::Mat image(kSize, CV_8U, cv::Scalar(70));
   for (const cv::Rect& bar : bars) image(bar).setTo(190);
-  const std::vector<LineSegment> lines = findLines(image, allGround(), {});
+  const std::vector<LineSegment> lines = findLines({image, allGround()}, {});
   for (const cv::Rect& bar : bars)
     for (const double u : {bar.x - 0.5, bar.x + bar.width - 0.5}) {
       int count = 0;
@@ -178,7 +178,7 @@ TEST(FindLines, PiecesOfOneEdgeThatAreFarApartAreLinesOfTheirOwn) {
 }
 
 TEST(FindLines, DescribeThemselvesConsistently) {
-  for (const LineSegment& line : findLines(render(runway(), 2, 0.8), allGround(), {})) {
+  for (const LineSegment& line : findLines({render(runway(), 2, 0.8), allGround()}, {})) {
     EXPECT_NEAR(line.line.head<2>().norm(), 1, 1e-12);
     EXPECT_NEAR(distance(line, {line.a.x(), line.a.y()}), 0, 1e-9);
     EXPECT_NEAR(distance(line, {line.b.x(), line.b.y()}), 0, 1e-9);
@@ -199,7 +199,7 @@ TEST(FindLines, AdmitTheErrorThatNoiseMakes) {
       const double x = 40.2 + 70 * i + 3.1 * k, lean = 6 * i - 25 + k;
       bars.push_back({{x, 200.3}, {x + 25, 200.3}, {x + 25 + lean, 260.4}, {x + lean, 260.4}});
     }
-    const std::vector<LineSegment> lines = findLines(render(bars, 12, 0.7), allGround(), {});
+    const std::vector<LineSegment> lines = findLines({render(bars, 12, 0.7), allGround()}, {});
     for (const Polygon& bar : bars) {
       const LineSegment* line = nearest(lines, bar[3], bar[0]);
       ASSERT_NE(line, nullptr);
@@ -218,17 +218,17 @@ TEST(FindLines, AdmitTheErrorThatNoiseMakes) {
 TEST(FindLines, AreOnTheGroundOnly) {
   cv::Mat ground = cv::Mat::zeros(kSize, CV_8UC1);
   ground(cv::Rect(0, 300, 640, 180)) = 255;
-  const std::vector<LineSegment> lines = findLines(render(runway(), 2, 0.8), ground, {});
+  const std::vector<LineSegment> lines = findLines({render(runway(), 2, 0.8), ground}, {});
   ASSERT_GE(lines.size(), 2U);
   for (const LineSegment& line : lines) EXPECT_GT(std::min(line.a.y(), line.b.y()), 299);
-  EXPECT_TRUE(findLines(render(runway()), cv::Mat::zeros(kSize, CV_8UC1), {}).empty());
+  EXPECT_TRUE(findLines({render(runway()), cv::Mat::zeros(kSize, CV_8UC1)}, {}).empty());
 }
 
 TEST(FindLines, WithoutRefinementAreAsGoodAsTheirHoughCell) {
   ApproachAngleParameters parameters;
   parameters.refine_lines = false;
   const auto polygons = runway();
-  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
+  const std::vector<LineSegment> lines = findLines({render(polygons, 2, 0.8), allGround()}, parameters);
   for (const auto& [a, b] : {std::pair{polygons[0][1], polygons[0][2]}, {polygons[0][3], polygons[0][0]}}) {
     const LineSegment* line = nearest(lines, a, b);
     ASSERT_NE(line, nullptr);
@@ -239,13 +239,13 @@ TEST(FindLines, WithoutRefinementAreAsGoodAsTheirHoughCell) {
 
 TEST(FindLines, HaveNothingToSayOnAUniformImage) {
   for (const int grey : {0, 128, 255})
-    EXPECT_TRUE(findLines(cv::Mat(kSize, CV_8UC1, cv::Scalar(grey)), allGround(), {}).empty());
+    EXPECT_TRUE(findLines({cv::Mat(kSize, CV_8UC1, cv::Scalar(grey)), allGround()}, {}).empty());
 }
 
 TEST(FindLines, AreTheSameEachTime) {
   const cv::Mat image = render(runway(), 4, 0.8);
-  const std::vector<LineSegment> first = findLines(image, allGround(), {});
-  const std::vector<LineSegment> second = findLines(image.clone(), allGround(), {});
+  const std::vector<LineSegment> first = findLines({image, allGround()}, {});
+  const std::vector<LineSegment> second = findLines({image.clone(), allGround()}, {});
   ASSERT_EQ(first.size(), second.size());
   for (size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].line, second[i].line);
@@ -255,10 +255,10 @@ TEST(FindLines, AreTheSameEachTime) {
 }
 
 TEST(FindLines, LookAtTheWholeOfATinyOrEmptyImageWithoutHarm) {
-  EXPECT_TRUE(findLines(cv::Mat::zeros(4, 4, CV_8UC1), cv::Mat::ones(4, 4, CV_8UC1), {}).empty());
+  EXPECT_TRUE(findLines({cv::Mat::zeros(4, 4, CV_8UC1), cv::Mat::ones(4, 4, CV_8UC1)}, {}).empty());
   const cv::Mat noise(40, 40, CV_8UC1);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
-  findLines(noise, cv::Mat(40, 40, CV_8UC1, cv::Scalar(255)), {});
+  findLines({noise, cv::Mat(40, 40, CV_8UC1, cv::Scalar(255))}, {});
 }
 
 /// A view whose horizon is the row of runway()'s vanishing point.
@@ -276,7 +276,7 @@ RoughSegment edgeOf(const cv::Point2d& a, const cv::Point2d& b) {
 TEST(FindLines, RefineOnlyThoseThatMayBeAlongTheRunwayIfToldSo) {
   const auto polygons = runway();
   const HeadingGate gate = runwayGate();
-  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), {}, &gate);
+  const std::vector<LineSegment> lines = findLines({render(polygons, 2, 0.8), allGround()}, {}, &gate);
   ASSERT_EQ(lines.size(), 4U);
   expectEdges(lines, polygons[0], 1.5);
   const Polygon& corners = polygons[0];
@@ -303,7 +303,7 @@ TEST(FindLines, LinesAcrossLeaveRoomForThoseAlongTheRunway) {
   cv::fillConvexPoly(image, stripe, cv::Scalar(190));
   const HeadingGate gate = runwayGate();
   const auto found = [&](const HeadingGate* used) {
-    const std::vector<LineSegment> lines = findLines(image, allGround(), {}, used);
+    const std::vector<LineSegment> lines = findLines({image, allGround()}, {}, used);
     const LineSegment* line = nearest(lines, a, b);
     return line != nullptr && std::max(distance(*line, a), distance(*line, b)) < 1.5;
   };
@@ -323,7 +323,7 @@ TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
   darker.brighter = -darker.brighter;
   LineMemory memory;
   const auto find = [&](const std::vector<RoughSegment>& expected) {
-    return findLinesNear(image, allGround(), expected, {}, runwayGate(), memory);
+    return findLinesNear({image, allGround()}, expected, {}, runwayGate(), memory);
   };
   EXPECT_TRUE(find({nowhere, outside, darker}).empty());
   const std::vector<LineSegment> lines = find({nowhere, right, outside, left});
@@ -335,18 +335,18 @@ TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
     EXPECT_GT(line->length(), 0.85 * cv::norm(b - a));
     EXPECT_GT(line->line.dot(Eigen::Vector3d(322, 300, 1)), 0) << "brighter inside";
   }
-  EXPECT_TRUE(
-      findLinesNear(image, cv::Mat::zeros(kSize, CV_8UC1), {right, left}, {}, runwayGate(), memory).empty());
+  EXPECT_TRUE(findLinesNear({image, cv::Mat::zeros(kSize, CV_8UC1)}, {right, left}, {}, runwayGate(), memory)
+                  .empty());
 }
 
 TEST(FindLinesNear, AreAsFindLinesHasThemButForThoseAcross) {
   const cv::Mat image = render(runway(), 2, 0.8);
   const HeadingGate gate = runwayGate();
-  const std::vector<LineSegment> found = findLines(image, allGround(), {}, &gate);
+  const std::vector<LineSegment> found = findLines({image, allGround()}, {}, &gate);
   std::vector<RoughSegment> expected;
   for (const LineSegment& line : found) expected.push_back({line.a, line.b, line.line.head<2>()});
   LineMemory memory;
-  const std::vector<LineSegment> again = findLinesNear(image, allGround(), expected, {}, gate, memory);
+  const std::vector<LineSegment> again = findLinesNear({image, allGround()}, expected, {}, gate, memory);
   ASSERT_EQ(found.size(), 4U);
   ASSERT_EQ(again.size(), 2U);
   for (size_t i = 0; i < again.size(); ++i) {

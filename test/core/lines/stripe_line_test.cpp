@@ -58,7 +58,7 @@ std::vector<double> misses(const std::vector<LineSegment>& lines) {
 
 TEST(StripeLine, SidesThatBlurPushesApartAreReplacedByALineThroughTheVanishingPoint) {
   const cv::Mat image = picture({{60, 64}, {330, 334}}, 0.8);  // 0.6 px wide at the top, 4 at the bottom
-  const std::vector<LineSegment> lines = findLines(image, ground(), {});
+  const std::vector<LineSegment> lines = findLines({image, ground()}, {});
   ASSERT_EQ(lines.size(), 4U);
   for (const double miss : misses(lines)) EXPECT_GT(miss, 0.3);
   const std::vector<LineSegment> mended = withoutStripeBias(image, ground(), lines);
@@ -74,7 +74,7 @@ TEST(StripeLine, SidesThatBlurPushesApartAreReplacedByALineThroughTheVanishingPo
 
 TEST(StripeLine, BothSidesOfOneStripeTogetherKnowNoMoreThanItsMiddle) {
   const cv::Mat image = picture({{60, 64}}, 0.8);
-  const std::vector<LineSegment> both = findLines(image, ground(), {});
+  const std::vector<LineSegment> both = findLines({image, ground()}, {});
   ASSERT_EQ(both.size(), 2U);
   const double of_both = withoutStripeBias(image, ground(), both)[0].angle_stddev;
   const double alone = withoutStripeBias(image, ground(), {both[0]})[0].angle_stddev;
@@ -83,7 +83,7 @@ TEST(StripeLine, BothSidesOfOneStripeTogetherKnowNoMoreThanItsMiddle) {
 
 TEST(StripeLine, SidesFarApartStayAsTheyAre) {
   const cv::Mat image = picture({{40, 110}}, 0.8);  // 10 px wide at the top
-  const std::vector<LineSegment> lines = findLines(image, ground(), {});
+  const std::vector<LineSegment> lines = findLines({image, ground()}, {});
   ASSERT_EQ(lines.size(), 2U);
   for (const double miss : misses(lines)) EXPECT_LT(std::abs(miss), 0.15);
   const std::vector<LineSegment> same = withoutStripeBias(image, ground(), lines);
@@ -96,7 +96,7 @@ TEST(StripeLine, SidesFarApartStayAsTheyAre) {
 // A worn part of the paint, a few pixels inside its edge, is eight times fainter than the edge.
 TEST(StripeLine, AFaintEdgeBesideALineIsNotItsOtherSide) {
   const cv::Mat image = picture({{40, 110}, {43.7, 75, -15}}, 0.8);
-  const std::vector<LineSegment> both = findLines(picture({{40, 110}}, 0.8), ground(), {});
+  const std::vector<LineSegment> both = findLines({picture({{40, 110}}, 0.8), ground()}, {});
   ASSERT_EQ(both.size(), 2U);
   const std::vector<LineSegment> same = withoutStripeBias(image, ground(), both);
   for (size_t i = 0; i < both.size(); ++i) {
@@ -108,7 +108,7 @@ TEST(StripeLine, AFaintEdgeBesideALineIsNotItsOtherSide) {
 
 TEST(StripeLine, AWideStripeThatGetsNarrowKeepsItsVanishingPoint) {
   const cv::Mat image = picture({{60, 80}}, 1.0);  // 3 px wide at the top, 20 at the bottom
-  const std::vector<LineSegment> lines = findLines(image, ground(), {});
+  const std::vector<LineSegment> lines = findLines({image, ground()}, {});
   ASSERT_EQ(lines.size(), 2U);
   for (const double miss : misses(withoutStripeBias(image, ground(), lines))) EXPECT_LT(std::abs(miss), 0.15);
 }

@@ -44,8 +44,7 @@ struct Flight {
     }
     LandingResult result;
     result.stamp = kPeriod * frame++;
-    result.height_protection_level = 0.2;
-    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, kHeight, 1e-4, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, {kHeight, 1e-4, 0.2}, result);
     return result;
   }
 };
@@ -108,7 +107,7 @@ TEST(PositionFilter, AStepOverTwoPairsOfWhichTheFirstWasGuessedCountsOnce) {
     }
     result = {};
     result.stamp = stamp;
-    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, kHeight, 1e-4, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, {kHeight, 1e-4, kUnknown}, result);
   };
   process(1, 0.1, true);
   process(1.1, 0.1, false);  // 2 m
@@ -170,7 +169,7 @@ struct Blind {
     if (turn) turned.rotation = *turn;
     result = {};
     result.stamp = stamp += kPeriod;
-    filter.process(approach, Eigen::Vector3d::UnitY(), turned, kHeight, 1e-4, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), turned, {kHeight, 1e-4, kUnknown}, result);
   }
 };
 

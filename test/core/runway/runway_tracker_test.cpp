@@ -60,6 +60,7 @@ struct Approach {
                                                     &ground_seen, parameters, memory, timings);
     if (third_line) addThirdLine(now, direction);
     ApproachAngleResult approach;
+    approach.stamp = time += 0.05;
     approach.left = direction.left;
     approach.right = direction.right;
     approach.n = n;
@@ -72,7 +73,7 @@ struct Approach {
     }
     last = now;
     ++frame;
-    return tracker.process(time += 0.05, left, approach, direction, now.height());
+    return tracker.process({left, model.left_mask}, approach, direction, now.height());
   }
   /// One view alone sees it.
   void addThirdLine(const Pose& now, RunwayDirection& direction) const {

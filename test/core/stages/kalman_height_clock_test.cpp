@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "integrity/stamp_order.h"
 #include "support/rigs.h"
-#include "uav_landing/integrity/stamp_order.h"
 #include "uav_landing/parameters/rectify_parameters.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 

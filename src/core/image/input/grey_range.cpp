@@ -1,4 +1,4 @@
-#include "uav_landing/image/grey_range.h"
+#include "image/input/grey_range.h"
 
 #include <algorithm>
 #include <cmath>

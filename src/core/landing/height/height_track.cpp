@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "uav_landing/height/height_limit.h"
+#include "height/height_limit.h"
 
 namespace uav_landing {
 

@@ -120,16 +120,21 @@ Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const
   return pair.angle_refused && of_height ? of_height : otherwise;
 }
 
-CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
-                          const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt) {
+StepScale scaleOfStep(const StereoRig& rig, const PairInput& in, const Ground& ground,
+                      const LandingResult& result) {
   // The lengths of the step come from depths of a normal that does not know the rig's rotation.
   const Eigen::Vector3d& n = in.approach.n;
   const bool another = ground.plane.valid() && n.allFinite();
   const double change = another ? depthChange(rig, in.stereo.points, n, ground.plane.normal()) : 0;
-  CameraTwist twist = cameraTwist(in.step(), (1 + change) * (result.height - ground.surface.bend),
-                                  result.height_variance, doubt.duration_variance);
+  return {result.height - ground.surface.bend, result.height_variance, change};
+}
+
+CameraTwist believedTwist(const PairInput& in, const PairVerdict& pair, const StepScale& scale,
+                          const MotionDoubt& doubt) {
+  CameraTwist twist =
+      cameraTwist(in.step(), (1 + scale.change) * scale.height, scale.variance, doubt.duration_variance);
   twist.covariance.topLeftCorner<3, 3>() +=
-      doubtOfVelocity(in, pair, twist.velocity, change, doubt.angle_variance);
+      doubtOfVelocity(in, pair, twist.velocity, scale.change, doubt.angle_variance);
   return twist;
 }
 

@@ -37,10 +37,18 @@ void judgeAngle(const PairInput& in, const Failure& refusal, double max_stddev_d
 /// test of the pair refuses the angle.
 Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const Failure& otherwise);
 
+/// What makes metres of a step, whose lengths are in heights.
+struct StepScale {
+  double height, variance;  ///< above the plane ahead, m, m^2
+  double change;            ///< of the step's lengths by the normal that the height refers to, as a share
+};
+/// result: with the published height.
+StepScale scaleOfStep(const StereoRig& rig, const PairInput& in, const Ground& ground,
+                      const LandingResult& result);
 /// Velocity and rate of turn from the step since the previous pair. The covariance contains errors that the
 /// step itself does not show.
-CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
-                          const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt);
+CameraTwist believedTwist(const PairInput& in, const PairVerdict& pair, const StepScale& scale,
+                          const MotionDoubt& doubt);
 
 void reportTwist(const CameraTwist& twist, LandingResult& result);
 

@@ -8,17 +8,18 @@
 
 namespace uav_landing {
 
-Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
-                             const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests) {
+Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const Published& published,
+                             const MotionDoubt& doubt, PairTests& tests) {
   const std::optional<HeightMemory::Expected> before = memory_.expected();
-  const HeightFilter& filter = post.filter;
+  const HeightFilter& filter = published.filter;
   const double scale = before ? before->height : filter.initialised() ? filter.state()[0] : kUnknown;
   // While normals contradict each other, the vertical part of the motion is not known.
   carry(in, ground, scale, doubt, !tests.failed(IntegrityTest::kTilt));
   const std::optional<HeightMemory::Expected> expected = memory_.expected();
   if (expected && filter.initialised())
-    tests.add(IntegrityTest::kSinkRate, filter.state()[0] - expected->height,
-              expected->variance + filter.ownCovariance()(0, 0) + errors.modelVariance(expected->height));
+    tests.add(
+        IntegrityTest::kSinkRate, filter.state()[0] - expected->height,
+        expected->variance + filter.ownCovariance()(0, 0) + published.errors.modelVariance(expected->height));
   const bool agrees = !tests.failed(IntegrityTest::kSinkRate);
   memory_.refresh(filter, agrees,
                   std::max(parameters_.alert_limit, parameters_.alert_limit_relative * scale));

@@ -14,10 +14,14 @@ class SinkRateWatch {
  public:
   explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
 
-  /// Returns why the published height is not valid, if so. errors: of the pair's height. doubt: of its step.
-  /// tests: those made so far; sink_rate is added.
-  Failure check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
-                const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests);
+  struct Published {
+    const HeightFilter& filter;  ///< its height is published
+    const HeightErrors& errors;  ///< of the pair's height
+  };
+  /// Returns why the published height is not valid, if so. doubt: of the pair's step. tests: those made so
+  /// far; sink_rate is added.
+  Failure check(const PairInput& in, const Ground& ground, const Published& published,
+                const MotionDoubt& doubt, PairTests& tests);
 
  private:
   void carry(const PairInput& in, const Ground& ground, double scale, const MotionDoubt& doubt,

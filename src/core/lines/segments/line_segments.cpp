@@ -61,9 +61,14 @@ cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,
   return edges;
 }
 
-/// Stretches of an infinite line (rho, theta) with edge pixels within 1 px and gaps of at most max_gap px.
-void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, double max_gap,
+struct StretchLimits {
+  double min_length, max_gap;  ///< px
+};
+
+/// Stretches of an infinite line (rho, theta) with edge pixels within 1 px.
+void cutLine(const cv::Mat& edges, const cv::Vec2f& line, const StretchLimits& limits,
              std::vector<RoughSegment>& segments) {
+  const auto [rho, theta] = line.val;
   const Eigen::Vector2d normal(std::cos(theta), std::sin(theta)), along(-normal.y(), normal.x());
   const Eigen::Vector2d foot = rho * normal;
   const bool steep = std::abs(along.y()) > std::abs(along.x());
@@ -81,14 +86,14 @@ void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, do
   };
   std::optional<Ends> open;
   const auto close = [&] {
-    if (open && (open->second - open->first).norm() >= min_length)
+    if (open && (open->second - open->first).norm() >= limits.min_length)
       segments.push_back({open->first, open->second});
     open.reset();
   };
   for (int i = 0; i < steps; ++i) {
     const Eigen::Vector2d p = point(i);
     if (!supported(p)) continue;
-    if (open && (p - open->second).norm() > max_gap + 1) close();
+    if (open && (p - open->second).norm() > limits.max_gap + 1) close();
     if (!open) open = Ends(p, p);
     open->second = p;
   }
@@ -102,8 +107,7 @@ std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
     std::vector<cv::Vec2f> lines;
     cv::HoughLines(edges, lines, 1, kHoughAngle, parameters.hough_threshold);
     if (lines.size() > kMaxHoughLines) lines.resize(kMaxHoughLines);
-    for (const cv::Vec2f& line : lines)
-      cutLine(edges, line[0], line[1], min_length, parameters.max_line_gap, segments);
+    for (const cv::Vec2f& line : lines) cutLine(edges, line, {min_length, parameters.max_line_gap}, segments);
   } else {
     std::vector<cv::Vec4i> lines;
     cv::HoughLinesP(edges, lines, 1, kHoughAngle, parameters.hough_threshold, min_length,
@@ -252,21 +256,20 @@ double minGradient(const ApproachAngleParameters& parameters) {
 }
 
 /// The part of the image in which lines are looked for; none when it is too small.
-std::optional<Part> partWithLines(const cv::Mat& image, const cv::Mat& ground, const HeadingGate* gate) {
+std::optional<Part> partWithLines(const RectifiedView& ground, const HeadingGate* gate) {
   constexpr int kSmallest = 8;
-  const cv::Rect bounds = boundsOf(ground);
+  const cv::Rect bounds = boundsOf(ground.mask);
   if (bounds.width < kSmallest || bounds.height < kSmallest) return std::nullopt;
-  return Part{{image(bounds), {}, ground(bounds)}, bounds.tl(), gate};
+  return Part{{ground.image(bounds), {}, ground.mask(bounds)}, bounds.tl(), gate};
 }
 
 }  // namespace
 
-std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters, const HeadingGate* gate,
-                                   LineMemory& memory) {
-  std::optional<Part> part = partWithLines(image, ground, gate);
+std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+                                   const HeadingGate* gate, LineMemory& memory) {
+  std::optional<Part> part = partWithLines(ground, gate);
   if (!part) return {};
-  const double min_length = parameters.min_line_length * image.rows;
+  const double min_length = parameters.min_line_length * ground.image.rows;
   std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters, memory.scanner);
   keepLongest(candidates, candidates.size(), [](const RoughSegment& s) { return Ends(s.a, s.b); });
   if (candidates.size() > kMaxCandidates) {
@@ -281,17 +284,16 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                       *part);
 }
 
-std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters, const HeadingGate* gate) {
+std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+                                   const HeadingGate* gate) {
   LineMemory memory;
-  return findLines(image, ground, parameters, gate, memory);
+  return findLines(ground, parameters, gate, memory);
 }
 
-std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
-                                       const std::vector<RoughSegment>& expected,
+std::vector<LineSegment> findLinesNear(const RectifiedView& ground, const std::vector<RoughSegment>& expected,
                                        const ApproachAngleParameters& parameters, const HeadingGate& gate,
                                        LineMemory& memory) {
-  std::optional<Part> part = partWithLines(image, ground, &gate);
+  std::optional<Part> part = partWithLines(ground, &gate);
   if (!part) return {};
   const cv::Size size = part->picture.image.size();
   part->picture.transposed = memory.transposed.image({size.height, size.width});
@@ -303,7 +305,7 @@ std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& grou
     if (ends && part->passes(ends->first, ends->second))
       candidates.push_back({ends->first, ends->second, line.brighter});
   }
-  const double min_length = parameters.min_line_length * image.rows;
+  const double min_length = parameters.min_line_length * ground.image.rows;
   return ofWholeImage(refined(candidates, *part, min_length, minGradient(parameters)), *part);
 }
 

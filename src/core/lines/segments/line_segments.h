@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/image_memory.h"
+#include "image/input/rectified_view.h"
 #include "lines/segments/heading_gate.h"
 #include "lines/segments/line_segment.h"
 #include "lines/segments/segment_scanner.h"
@@ -21,21 +22,18 @@ struct LineMemory {
 /// Lines of the ground (paper, section 2). They are straight edges followed from scan lines, or found by a
 /// Hough transform of the Canny edges (hough_method). Then each is fitted to the gradient along it.
 /// Deterministic. Returns an empty list when there are none.
-/// image: rectified mono8. ground: mono8, 255 where lines are looked for (already eroded). gate: only lines
-/// that pass it are fitted. The others follow in the list, as they were found, good to half a pixel. Null:
+/// ground: its mask is set where lines are looked for (already eroded). gate: only lines that pass it are
+/// fitted. The others follow in the list, as they were found, good to half a pixel. Null:
 /// all lines are fitted.
-std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters, const HeadingGate* gate,
-                                   LineMemory& memory);
+std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+                                   const HeadingGate* gate, LineMemory& memory);
 /// The same with memory of its own.
-std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters,
+std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate = nullptr);
 
 /// Those of the expected lines that exist and pass the gate, fitted to the gradient as above. expected: off
 /// by up to 2 px; they may reach beyond the image.
-std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
-                                       const std::vector<RoughSegment>& expected,
+std::vector<LineSegment> findLinesNear(const RectifiedView& ground, const std::vector<RoughSegment>& expected,
                                        const ApproachAngleParameters& parameters, const HeadingGate& gate,
                                        LineMemory& memory);
 

@@ -102,7 +102,7 @@ class Search {
     {
       ScopedTimer timer(timings_, "lines");
       const HeadingGate gate = gateOf(view);
-      lines = findLines(view.image, ground_ ? groundPart(view) : view.mask, parameters_,
+      lines = findLines({view.image, ground_ ? groundPart(view) : view.mask}, parameters_,
                         hasRunway() ? &gate : nullptr, memory_.lines);
     }
     return withPoint(view, std::move(lines));
@@ -115,7 +115,8 @@ class Search {
     std::vector<LineSegment> lines;
     {
       ScopedTimer timer(timings_, "lines");
-      lines = findLinesNear(view.image, groundPart(view), expected, parameters_, gateOf(view), memory_.lines);
+      lines =
+          findLinesNear({view.image, groundPart(view)}, expected, parameters_, gateOf(view), memory_.lines);
     }
     Found found = withPoint(view, std::move(lines));
     if (found.point && found.point->inlier_count >= kEnough * other.inlier_count) return found;

@@ -23,15 +23,16 @@ constexpr double kWorthlessY = 0.1;  // 1 sigma as a share of the runway's width
 PositionFilter::PositionFilter(const KalmanHeightParameters& parameters) : separation_(parameters) {}
 
 void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
-                             const ApproachAngleResult::Motion& turn, double height, double height_variance,
+                             const ApproachAngleResult::Motion& turn, const PositionSeparation::Height& scale,
                              LandingResult& result) {
+  const double height = scale.value;
   const double seconds = last_stamp_ ? result.stamp - *last_stamp_ : 0;
   last_stamp_ = result.stamp;
   followDirection(approach.vanishing_direction, turn, seconds);
   move(approach, normal, height, seconds);
   const ApproachAngleResult::Runway& seen = approach.runway;
   const auto metric = [&](double ratio, double variance) {
-    return variance * height * height + ratio * ratio * height_variance;
+    return variance * height * height + ratio * ratio * scale.variance;
   };
   if (std::isfinite(height) && !seen.failure && seen.y_variance > 0) {
     if (std::isfinite(seen.width)) {
@@ -39,7 +40,7 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
     y_.update(seen.y * height, metric(seen.y, seen.y_variance), 0, seconds);
-    separation_.update(seen.y_without, {height, height_variance, result.height_protection_level}, seconds);
+    separation_.update(seen.y_without, scale, seconds);
     if (!seen.threshold_failure && seen.x_variance > 0)
       x_.update(seen.x * height, metric(seen.x, seen.x_variance),
                 seen.x_systematic_variance * height * height, seconds);

@@ -17,13 +17,13 @@ class PositionFilter {
  public:
   explicit PositionFilter(const KalmanHeightParameters& parameters);
 
-  /// Processes one pair. Fills x, y, the runway's width, their variances and the protection level in the
-  /// result, which has the protection level of the height.
+  /// Processes one pair. Fills x, y, the runway's width, their variances and the protection level of y
+  /// in the result, which has its stamp.
   /// - normal: of the ground, left camera frame.
   /// - turn: motion since the previous pair, used for its rotation.
-  /// - height: m, with its variance in m^2; NaN while it is not valid.
+  /// - height: NaN while it is not valid.
   void process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
-               const ApproachAngleResult::Motion& turn, double height, double height_variance,
+               const ApproachAngleResult::Motion& turn, const PositionSeparation::Height& height,
                LandingResult& result);
 
  private:

@@ -101,11 +101,10 @@ void RunwayTracker::missCentre(double seconds) {
   if (centre_.confirmations() == 0) width_ = wider_ = Follower();
 }
 
-ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& left,
+ApproachAngleResult::Runway RunwayTracker::process(const RectifiedView& left,
                                                    const ApproachAngleResult& approach,
-                                                   const RunwayDirection& direction, double height,
-                                                   const StampMap& rows) {
-  const double seconds = advance(stamp);
+                                                   const RunwayDirection& direction, double height) {
+  const double seconds = advance(approach.stamp);
   ApproachAngleResult::Runway result;
   if (!approach.n.allFinite() || !direction.combined) {
     result.failure = approach.n.allFinite()
@@ -124,7 +123,7 @@ ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& 
   const GroundAxes axes(approach.n, approach.n_covariance, p, own);
   predict(&axes, approach.step);
   findCentre(seconds, axes, direction, height, result);
-  findThresholdLine(seconds, left, rows, axes, result);
+  findThresholdLine(seconds, left, axes, result);
   return result;
 }
 
@@ -240,16 +239,16 @@ void RunwayTracker::followWidth(const RunwayCrossSection& seen, ApproachAngleRes
   }
 }
 
-void RunwayTracker::findThresholdLine(double seconds, const cv::Mat& left, const StampMap& rows,
-                                      const GroundAxes& axes, ApproachAngleResult::Runway& result) {
+void RunwayTracker::findThresholdLine(double seconds, const RectifiedView& left, const GroundAxes& axes,
+                                      ApproachAngleResult::Runway& result) {
   if (result.failure || width_.confirmations() < kConfirmations) {
     result.threshold_failure =
         result.failure ? result.failure : Failure{Reason::kNotYet, "the runway's width is not known"};
     threshold_.miss(seconds, kThresholdPatience);
     return;
   }
-  const Expected<Threshold> seen = findThreshold({left, model_.left_mask, rows}, model_.rig, axes,
-                                                 {-result.y, result.y_variance, width_.value(), 0}, rows_);
+  const Expected<Threshold> seen =
+      findThreshold(left, model_.rig, axes, {-result.y, result.y_variance, width_.value(), 0}, rows_);
   if (!seen) {
     result.threshold_failure = seen.error();
     threshold_.miss(seconds, kThresholdPatience);

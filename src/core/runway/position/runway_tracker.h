@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "image/input/rectified_view.h"
 #include "kernels/image/line_view.h"
 #include "runway/direction/runway_direction.h"
 #include "runway/edges/runway_edges.h"
@@ -27,14 +28,12 @@ class RunwayTracker {
                 const RunwayParameters& runway = {});
 
   /// Processes one pair.
-  /// - left: rectified image.
-  /// - approach: result of this pair, with n and the step.
+  /// - left: its image, with the camera's whole mask.
+  /// - approach: result of this pair, with its stamp, n and the step.
   /// - direction: vanishing direction and lines of this pair.
   /// - height: from stereo, m, or NaN. Without it only the left view is used.
-  /// - rows: row times of the left image.
-  ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
-                                      const RunwayDirection& direction, double height,
-                                      const StampMap& rows = {});
+  ApproachAngleResult::Runway process(const RectifiedView& left, const ApproachAngleResult& approach,
+                                      const RunwayDirection& direction, double height);
   /// Call it for a pair without any result. The motion of the next pair must begin at this one.
   void skip(double stamp);
   void reset();
@@ -76,7 +75,7 @@ class RunwayTracker {
   Edges edgesOf(const GroundAxes& axes, const RunwayDirection& direction, double height) const;
   void findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction, double height,
                   ApproachAngleResult::Runway& result);
-  void findThresholdLine(double seconds, const cv::Mat& left, const StampMap& rows, const GroundAxes& axes,
+  void findThresholdLine(double seconds, const RectifiedView& left, const GroundAxes& axes,
                          ApproachAngleResult::Runway& result);
 
   /// Follows lines that are half of a wider runway. Returns what was seen, or a refusal when it is such a

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "parameters/out_of_range.h"
 #include "uav_landing/base/failure.h"
-#include "uav_landing/parameters/out_of_range.h"
 
 namespace uav_landing {
 
