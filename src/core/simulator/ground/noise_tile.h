@@ -1,15 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <opencv2/core.hpp>
-#include <vector>
+
+#include "kernels/image/rip_map.h"
 
 namespace uav_landing {
 
-/// A square of random texture that repeats without a seam, with mean 0 and variance 1. The mean over any
-/// axis-aligned rectangle takes the same short time. To that end, copies averaged over 2^i x 2^j texels are
-/// kept for all i and j (a rip-map). So ground that is seen at a grazing angle neither aliases nor blurs
-/// sideways.
+/// A square of random texture that repeats without a seam, with mean 0 and variance 1. Ground that is seen at
+/// a grazing angle neither aliases nor blurs sideways.
 class NoiseTile {
  public:
   static constexpr int kSize = 512;  ///< texels along a side
@@ -20,14 +18,10 @@ class NoiseTile {
 
   /// Mean over a rectangle of width x height texels around (x, y). The tile repeats. Texel i covers [i, i +
   /// 1).
-  float mean(float x, float y, float width, float height) const;
+  float mean(float x, float y, float width, float height) const { return map_.mean(x, y, width, height); }
 
  private:
-  struct Taps;
-  float interpolate(int i, int j, const Taps& column, const Taps& row) const;
-
-  static constexpr int kLevels = 10;  ///< 2^9 texels are the whole side
-  std::vector<cv::Mat> levels_;       ///< [i * kLevels + j]: averaged over 2^i columns and 2^j rows
+  RipMap map_;
 };
 
 }  // namespace uav_landing
