@@ -25,7 +25,7 @@ function(uav_landing_add_rostest_gtest name launch_file file)
     add_dependencies(${name} ${ARG_DEPENDENCIES})
   endif()
   uav_landing_test_sources(${launch_file} ${file})
-  uav_landing_run_serial(rostest ${launch_file})
+  uav_landing_run_one_at_a_time(rostest ${launch_file})
 endfunction()
 
 # uav_landing_add_rostest(<file.test> [SOURCES <node.py>...] [DEPENDENCIES <target>...])
@@ -34,14 +34,14 @@ function(uav_landing_add_rostest launch_file)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDENCIES" ${ARGN})
   add_rostest(${launch_file} DEPENDENCIES ${ARG_DEPENDENCIES})
   uav_landing_test_sources(${launch_file} ${ARG_SOURCES})
-  uav_landing_run_serial(rostest ${launch_file})
+  uav_landing_run_one_at_a_time(rostest ${launch_file})
 endfunction()
 
-# uav_landing_add_python_test(<file.py> [SERIAL] [DEPENDENCIES <target>...])
+# uav_landing_add_python_test(<file.py> [ONE_AT_A_TIME] [DEPENDENCIES <target>...])
 # unittest.TestCase classes in a python file. They may import from test/support, and find the build and its programs
-# by project.py there. SERIAL: runs alone, for tests that start a ROS master or use the whole machine.
+# by project.py there. ONE_AT_A_TIME: not beside rostests, for tests that start a ROS master or build something.
 function(uav_landing_add_python_test file)
-  cmake_parse_arguments(ARG "SERIAL" "" "DEPENDENCIES" ${ARGN})
+  cmake_parse_arguments(ARG "ONE_AT_A_TIME" "" "DEPENDENCIES" ${ARGN})
   if(NOT NOSETESTS)
     message(FATAL_ERROR "nosetests is missing (package python3-nose)")
   endif()
@@ -54,8 +54,8 @@ UAV_LANDING_BUILD_DIR=\"${PROJECT_BINARY_DIR}\" UAV_LANDING_DEVEL_DIR=\"${CATKIN
   catkin_run_tests_target("nosetests" ${name} ${result} COMMAND "${environment} ${nose}"
     DEPENDENCIES ${ARG_DEPENDENCIES} WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
   uav_landing_test_sources(${file})
-  if(ARG_SERIAL)
-    uav_landing_run_serial(nosetests ${file})
+  if(ARG_ONE_AT_A_TIME)
+    uav_landing_run_one_at_a_time(nosetests ${file})
   else()
     set_tests_properties(_ctest_${PROJECT_NAME}_nosetests_${name} PROPERTIES TIMEOUT 600)
   endif()
@@ -70,10 +70,11 @@ function(uav_landing_setup_test_program name)
   target_link_libraries(${name} uav_landing_core ${ARGN} ${gtest_main})
 endfunction()
 
-# rostests run one at a time: their timing must not depend on what else runs.
-function(uav_landing_run_serial type file)
+# What starts nodelets runs one at a time, beside other tests: these tests wait most of the time, and a processor would
+# be idle. COST: they begin first, as they make the longest row.
+function(uav_landing_run_one_at_a_time type file)
   string(REPLACE "/" "_" name ${file})
-  set_tests_properties(_ctest_${PROJECT_NAME}_${type}_${name} PROPERTIES RUN_SERIAL ON TIMEOUT 600)
+  set_tests_properties(_ctest_${PROJECT_NAME}_${type}_${name} PROPERTIES RESOURCE_LOCK nodelets COST 100 TIMEOUT 600)
 endfunction()
 
 # Notes test sources as registered; also for files that a .test file starts by itself.
@@ -90,6 +91,12 @@ endif()
 file(GLOB test_areas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/*/tests.cmake)
 foreach(area ${test_areas})
   include(${area})
+endforeach()
+
+# The longest tests begin first, so that no processor waits for one of them at the end.
+foreach(test nosetests_test_scripts_fault_campaign_test.py gtest_scenery_yaw_test
+    nosetests_test_tools_simulate_campaign_test.py nosetests_test_tools_simulate_approach_test.py)
+  set_tests_properties(_ctest_${PROJECT_NAME}_${test} PROPERTIES COST 50)
 endforeach()
 
 file(GLOB launch_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} launch/*.launch)

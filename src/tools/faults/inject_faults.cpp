@@ -126,17 +126,15 @@ class Campaign {
 
   void flySimulated(uint64_t seed) {
     const SimulatorParameters drawn = draw(seed);
-    const auto plain = simulateFlight(drawn);
-    if (!plain) return;
-    std::map<std::string, std::unique_ptr<SimulatedFlight>> others;  // by the faults that change the scene
+    if (!ApproachSimulator::create(drawn)) return;
+    std::map<std::string, std::unique_ptr<SimulatedFlight>> flights;  // by the faults that change the scene
     const bool flat = GroundProfile(drawn.profile).flat();
     for (const FaultCombination& faults : choice_.combinations(seed)) {
       if (!flat && std::any_of(faults.begin(), faults.end(), paintsGround)) continue;
       SimulatorParameters changed = drawn;
       const std::string name = changeScene(faults, seed, changed);
-      if (!name.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
-      const SimulatedFlight* flight = name.empty() ? plain.get() : others[name].get();
-      if (flight != nullptr) flyOne(flight->flight, source(), faults, seed);
+      if (flights.count(name) == 0) flights[name] = simulateFlight(changed);
+      if (const auto& flown = flights[name]) flyOne(flown->flight, source(), faults, seed);
     }
   }
 
