@@ -1,4 +1,4 @@
-# Builds without ROS (-DUAV_LANDING_CORE_ONLY=ON): the core, simulate_campaign and the tests below. They are what
+# Builds without ROS (-DUAV_LANDING_CORE_ONLY=ON): the core, simulate_campaign, the example and the tests below. They are what
 # scripts/test_arm64 compiles for another processor.
 find_package(Eigen3 REQUIRED)
 find_package(yaml-cpp REQUIRED)
@@ -23,6 +23,9 @@ add_executable(simulate_campaign
 target_include_directories(simulate_campaign PRIVATE src/tools src/core)
 target_compile_definitions(simulate_campaign PRIVATE UAV_LANDING_VERSION="${version}")
 target_link_libraries(simulate_campaign PRIVATE uav_landing_core CLI11::CLI11)
+
+add_executable(height_without_ros EXCLUDE_FROM_ALL examples/height_without_ros.cpp)
+target_link_libraries(height_without_ros PRIVATE uav_landing_core)
 
 # All kernels, and a test of every other step from the images to the landing estimate.
 set(core_only_tests

@@ -1,6 +1,7 @@
 # What the nodelets and the programs share (src/ros), and the nodelets.
 file(GLOB ros_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/ros/*.cpp)
 add_library(uav_landing_ros SHARED ${ros_sources})
+# src/core: order of stamps, range of greys and others that no program outside needs.
 target_include_directories(uav_landing_ros PUBLIC ${PROJECT_SOURCE_DIR}/src/ros ${PROJECT_SOURCE_DIR}/src/core)
 target_include_directories(uav_landing_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(uav_landing_ros PUBLIC uav_landing_core ${catkin_LIBRARIES} PRIVATE yaml-cpp)

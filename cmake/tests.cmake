@@ -25,7 +25,7 @@ function(uav_landing_add_rostest_gtest name launch_file file)
     add_dependencies(${name} ${ARG_DEPENDENCIES})
   endif()
   uav_landing_test_sources(${launch_file} ${file})
-  uav_landing_run_one_at_a_time(rostest ${launch_file})
+  uav_landing_lock(rostest ${launch_file} nodelets)
 endfunction()
 
 # uav_landing_add_rostest(<file.test> [SOURCES <node.py>...] [DEPENDENCIES <target>...])
@@ -34,14 +34,14 @@ function(uav_landing_add_rostest launch_file)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDENCIES" ${ARGN})
   add_rostest(${launch_file} DEPENDENCIES ${ARG_DEPENDENCIES})
   uav_landing_test_sources(${launch_file} ${ARG_SOURCES})
-  uav_landing_run_one_at_a_time(rostest ${launch_file})
+  uav_landing_lock(rostest ${launch_file} nodelets)
 endfunction()
 
-# uav_landing_add_python_test(<file.py> [ONE_AT_A_TIME] [DEPENDENCIES <target>...])
+# uav_landing_add_python_test(<file.py> [LOCK <name>] [DEPENDENCIES <target>...])
 # unittest.TestCase classes in a python file. They may import from test/support, and find the build and its programs
-# by project.py there. ONE_AT_A_TIME: not beside rostests, for tests that start a ROS master or build something.
+# by project.py there. LOCK: tests with the same name here run one at a time. The rostests have `nodelets`.
 function(uav_landing_add_python_test file)
-  cmake_parse_arguments(ARG "ONE_AT_A_TIME" "" "DEPENDENCIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "LOCK" "DEPENDENCIES" ${ARGN})
   if(NOT NOSETESTS)
     message(FATAL_ERROR "nosetests is missing (package python3-nose)")
   endif()
@@ -54,10 +54,9 @@ UAV_LANDING_BUILD_DIR=\"${PROJECT_BINARY_DIR}\" UAV_LANDING_DEVEL_DIR=\"${CATKIN
   catkin_run_tests_target("nosetests" ${name} ${result} COMMAND "${environment} ${nose}"
     DEPENDENCIES ${ARG_DEPENDENCIES} WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
   uav_landing_test_sources(${file})
-  if(ARG_ONE_AT_A_TIME)
-    uav_landing_run_one_at_a_time(nosetests ${file})
-  else()
-    set_tests_properties(_ctest_${PROJECT_NAME}_nosetests_${name} PROPERTIES TIMEOUT 600)
+  set_tests_properties(_ctest_${PROJECT_NAME}_nosetests_${name} PROPERTIES TIMEOUT 600)
+  if(ARG_LOCK)
+    uav_landing_lock(nosetests ${file} ${ARG_LOCK})
   endif()
 endfunction()
 
@@ -71,10 +70,10 @@ function(uav_landing_setup_test_program name)
 endfunction()
 
 # What starts nodelets runs one at a time, beside other tests: these tests wait most of the time, and a processor would
-# be idle. COST: they begin first, as they make the longest row.
-function(uav_landing_run_one_at_a_time type file)
+# be idle. COST: tests with a lock begin first. In a row they take longest.
+function(uav_landing_lock type file lock)
   string(REPLACE "/" "_" name ${file})
-  set_tests_properties(_ctest_${PROJECT_NAME}_${type}_${name} PROPERTIES RESOURCE_LOCK nodelets COST 100 TIMEOUT 600)
+  set_tests_properties(_ctest_${PROJECT_NAME}_${type}_${name} PROPERTIES RESOURCE_LOCK ${lock} COST 100)
 endfunction()
 
 # Notes test sources as registered; also for files that a .test file starts by itself.

@@ -6,8 +6,7 @@ add_library(uav_landing_tools STATIC
   src/tools/bags/topic_advice.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
   src/tools/datasets/dataset_writer.cpp src/tools/datasets/decimal_time.cpp src/tools/simulation/random_approach.cpp
   src/tools/simulation/random_far.cpp src/tools/simulation/random_flight.cpp src/tools/simulation/random_rows.cpp src/tools/simulation/random_scenery.cpp)
-# Some programs look inside the core: what surfaces and pictures are made of.
-target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools ${PROJECT_SOURCE_DIR}/src/core)
+target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11 PRIVATE BZip2::BZip2 yaml-cpp)

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "uav_landing/geometry/camera_pair.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -17,16 +18,20 @@ int main(int argc, char** argv) {
   const auto cameras = ul::ApproachSimulator::create({});
   if (!cameras) return std::fprintf(stderr, "%s\n", cameras.error().message().c_str()), 1;
 
-  auto chain = ul::Pipeline::create(cameras->rig().left.calibration, cameras->rig().right.calibration, {});
+  const ul::Parameters parameters;
+  const auto pair =
+      ul::workingPair(cameras->rig().left.calibration, cameras->rig().right.calibration, parameters.rig);
+  if (!pair) return std::fprintf(stderr, "%s\n", pair.error().message().c_str()), 1;
+  auto chain = ul::Pipeline::create(pair->left, pair->right, parameters);
   if (!chain) return std::fprintf(stderr, "%s\n", chain.error().message().c_str()), 1;
   for (const std::string& warning : chain->warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
 
   std::printf("  time s  height m  1 sigma   true m  angle deg  valid\n");
   for (int i = 0; i < pairs && i < cameras->frames(); ++i) {
-    const ul::ApproachSimulator::Frame pair = cameras->frame(i);
-    const ul::LandingResult& landing = chain->process(pair.time, pair.left, pair.right).landing;
-    std::printf("%8.3f %9.3f %8.3f %8.3f %10.3f  %s\n", pair.time, landing.height,
-                std::sqrt(landing.height_variance), pair.truth.height, landing.approach_angle * 180 / M_PI,
+    const ul::ApproachSimulator::Frame frame = cameras->frame(i);
+    const ul::LandingResult& landing = chain->process(frame.time, frame.left, frame.right).landing;
+    std::printf("%8.3f %9.3f %8.3f %8.3f %10.3f  %s\n", frame.time, landing.height,
+                std::sqrt(landing.height_variance), frame.truth.height, landing.approach_angle * 180 / M_PI,
                 landing.valid() ? "yes" : landing.failure.message().c_str());
   }
 }

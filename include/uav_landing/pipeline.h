@@ -14,8 +14,9 @@ namespace uav_landing {
 /// The whole chain, for one pair after another, as the nodelets run it.
 class Pipeline {
  public:
-  /// left, right: see workingPair(). Fails when parameters.rig does not accept the cameras, or when a mask
-  /// that it names cannot be used.
+  /// left, right: the cameras that workingPair() returns (geometry/camera_pair.h). With upside_down it
+  /// exchanges them, and process() has to get the images exchanged as well. Fails when parameters.rig does
+  /// not accept the cameras, or when a mask that it names cannot be used.
   static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
                                    const Parameters& parameters);
 

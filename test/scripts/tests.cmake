@@ -14,7 +14,7 @@ uav_landing_add_python_test(test/scripts/process_bags_test.py DEPENDENCIES proce
 uav_landing_add_rostest(test/scripts/record_estimates.test SOURCES test/scripts/record_estimates_test.py)
 uav_landing_add_python_test(test/scripts/print_board_test.py)
 uav_landing_add_python_test(test/scripts/fault_campaign_test.py DEPENDENCIES inject_faults)
-uav_landing_add_python_test(test/scripts/soak_test.py ONE_AT_A_TIME
+uav_landing_add_python_test(test/scripts/soak_test.py LOCK nodelets
   DEPENDENCIES process_bag simulate_approach uav_landing_nodelets)
 uav_landing_add_python_test(test/scripts/flightgear_test.py)
 uav_landing_add_python_test(test/scripts/mutation_test.py)

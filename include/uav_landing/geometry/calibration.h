@@ -11,9 +11,10 @@ namespace uav_landing {
 
 /// One camera's calibration, field by field as in sensor_msgs/CameraInfo (REP 104), without ROS.
 struct CameraCalibration {
-  int width = 0;                 ///< full-resolution image width, pixels
-  int height = 0;                ///< full-resolution image height, pixels
-  std::string distortion_model;  ///< "plumb_bob" (up to 5 coefficients) or "rational_polynomial" (8)
+  int width = 0;   ///< full-resolution image width, pixels
+  int height = 0;  ///< full-resolution image height, pixels
+  /// "plumb_bob" (up to 5 coefficients), "rational_polynomial" (8, 12 or 14), "equidistant" or "fisheye" (4).
+  std::string distortion_model;
   std::vector<double> D;
   Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d R = Eigen::Matrix3d::Zero();

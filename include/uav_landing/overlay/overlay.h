@@ -15,7 +15,7 @@ namespace uav_landing {
 /// the result at least 640 pixels wide.
 int overlayScale(int width, const OverlayParameters& parameters);
 
-/// What the stages found in a pair.
+/// What the stages found in a pair. It refers to the results, which have to live as long.
 struct PairFindings {
   const StereoDepthResult& stereo;
   const ApproachAngleResult& approach;

@@ -14,7 +14,7 @@ struct TestResult {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   std::string name;
-  double difference = kNone;  ///< in the test's own unit (docs/integrity.md)
+  double difference = kNone;  ///< in the test's own unit (docs/integrity_tests.md)
   double variance = kNone;    ///< of the difference without a fault, unit^2
   double ratio = kNone;       ///< squared normalised difference; NaN when the test was not possible
   double limit = kNone;       ///< chi-square limit of the ratio

@@ -27,16 +27,16 @@ struct RunwaySize {
   double width = 0, length = 0;
 };
 
-/// What the outline's picture is expected to be like.
+/// What the outline's image is expected to be like.
 struct OutlineLook {
   double focal_length = 0;  ///< px
   /// Of the surface, about, m: what markings are small against. Length 0: by the taper.
   RunwaySize size{35, 0};
-  double blur = 0.65;  ///< 1 sigma of the picture's blur, pixels included, px
+  double blur = 0.65;  ///< 1 sigma of the image's blur, pixels included, px
   double blur_stddev = 0.12;
 };
 
-/// Corners of the surface in the picture: near left, far left, far right, near right; px. The sides lead from
+/// Corners of the surface in the image: near left, far left, far right, near right; px. The sides lead from
 /// one to the next: left, far, right, near.
 using Corners = std::array<Eigen::Vector2d, 4>;
 constexpr int kSides = 4;
@@ -54,7 +54,7 @@ struct OutlineSide {
   Eigen::Vector2d movedTo(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
 };
 
-/// The picture of the surface's corners; none unless all are in front of the camera.
+/// The image of the surface's corners; none unless all are in front of the camera.
 std::optional<Corners> cornersOf(const RunwayPose& pose, const RunwaySize& size, const StereoRig& rig);
 
 /// How far each side of the corners lies inside of the reference's, at both ends of that, side by side.

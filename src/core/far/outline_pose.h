@@ -9,7 +9,7 @@
 
 namespace uav_landing {
 
-/// The outline as a picture shows it.
+/// The outline as an image shows it.
 struct SeenOutline {
   Corners reference;    ///< px
   Vector8d inward;      ///< by how much the sides lie inside of it at its ends, px (see movedInward())
@@ -44,7 +44,7 @@ struct OutlinePose {
 /// leaves the scale open, and says little of roll and pitch from afar. With width and length of the chart the
 /// height needs no horizon:
 ///   D = f W / w,  h = v D (D + L) / (f L)
-/// with the near side's width w and the outline's height v in the picture. Without a chart the plane of
+/// with the near side's width w and the outline's height v in the image. Without a chart the plane of
 /// stereo gives the scale at the threshold, whose corners lie on it.
 ///
 /// Fails where nothing tells the scale, or the outline is none of a surface ahead.

@@ -160,7 +160,7 @@ class Search {
     return {mean_u, uv / vv, mean_v};
   }
 
-  /// Mean grey level of a row between two columns; NaN where it is not in the picture.
+  /// Mean grey level of a row between two columns; NaN where it is not in the image.
   double mean(int v, double from, double to) const {
     const int first = static_cast<int>(std::ceil(from)), last = std::max(first, static_cast<int>(to));
     if (v < 0 || v >= image_.rows || first < 0 || last >= image_.cols) return std::nan("");

@@ -22,7 +22,7 @@ inline EdgeStripes usualStripes(double runway_width) {
 /// Grey level in the middle of a blurred stripe. amplitude: its width times its contrast, m x grey levels.
 /// scale: px a metre.
 inline double shownStripe(double amplitude, double scale) {
-  constexpr double kLeft = 0.4;  // by the blur of the picture
+  constexpr double kLeft = 0.4;  // by the blur of the image
   return kLeft * (amplitude < 0 ? -amplitude : amplitude) * scale;
 }
 

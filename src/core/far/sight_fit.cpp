@@ -28,7 +28,7 @@ constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart
 constexpr double kClear = 3, kClearAlone = 4;
 constexpr double kMostOffPlane = 3;  // standard deviations, hills included
 constexpr double kPoorFit = 6;       // misfit above which the fit begins once more at the pose that it gave
-constexpr double kBroad = 0.12;      // of the picture's width: nearer, markings tell more
+constexpr double kBroad = 0.12;      // of the image's width: nearer, markings tell more
 
 Failure noRunway(const std::string& why) { return {Reason::kNoRunway, why}; }
 
@@ -99,7 +99,7 @@ Failure SightFit::problemOf(const OutlinePose& found, const KnownGround& ground)
   if (found.misfit > kMostMisfit)
     return noRunway(text("the outline contradicts what is known of runway and ground, with a chi-square of ",
                          rounded(found.misfit)));
-  if (ground.plane.valid() && std::abs(offPlane(found, ground.plane)) > kMostOffPlane)
+  if (ground.plane.valid() && !(std::abs(offPlane(found, ground.plane)) <= kMostOffPlane))
     return {Reason::kRejected,
             text("by the outline the runway lies ", rounded(p.z()),
                  " m below the camera, and by stereo the ground ", rounded(ground.plane.height()),

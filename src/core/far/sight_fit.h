@@ -18,12 +18,12 @@ struct KnownGround {
   GroundPlane plane;                   ///< by stereo, or not valid
 };
 
-/// A runway's outline in one picture, with the pose that belongs to it.
+/// A runway's outline in one image, with the pose that belongs to it.
 struct SightedRunway {
   FittedOutline outline;
   OutlinePose pose;
   Corners corners;        ///< px
-  EdgeReadings readings;  ///< of this picture and those before
+  EdgeReadings readings;  ///< of this image and those before
 };
 
 /// The one of two fits that agrees better with its own pose; the other one when one has failed.
@@ -39,7 +39,7 @@ class SightFit {
   /// it; 0: not known. Fails where no outline is found there.
   Expected<SightedRunway> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
                               const RunwaySize& about) const;
-  /// The same for a runway that is followed. last: in the picture before.
+  /// The same for a runway that is followed. last: in the image before.
   Expected<SightedRunway> follow(const cv::Mat& left, const Corners& start, const KnownGround& ground,
                                  const SightedRunway& last) const;
   /// Corners to fit once more from: those of the pose, when outline and pose differ. Otherwise nothing.
@@ -52,7 +52,7 @@ class SightFit {
   /// True when an outline is too near to begin with it.
   static bool isNear(const OutlinePose& pose);
 
-  /// Where in the picture a runway's far part may be.
+  /// Where in the image a runway's far part may be.
   cv::Rect region(const KnownGround& ground) const;
   PoseKnowledge knowledge(const KnownGround& ground) const;
   const RigModel& model() const { return model_; }

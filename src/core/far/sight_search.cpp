@@ -17,14 +17,13 @@ constexpr double kStarts[] = {0, 0.3};
 constexpr double kDoubtfulStart = 7;  // misfit
 constexpr double kDoubtfulPlane = 2;  // standard deviations off the plane of stereo
 constexpr double kRival = 0.6;        // of the strength: another one that shows as clearly
-constexpr int kPatch = 48;            // px, width and height of the piece of the picture that is followed
+constexpr int kPatch = 48;            // px, width and height of the piece of the image that is followed
 constexpr int kReach = 16;            // px from pair to pair
 
 Failure noRunway(const char* why) { return {Reason::kNoRunway, why}; }
 
-bool isDoubtful(const OutlinePose& pose, const KnownGround& ground) {
-  if (pose.misfit > kDoubtfulStart) return true;
-  return ground.plane.valid() && std::abs(offPlane(pose, ground.plane)) > kDoubtfulPlane;
+bool isOffPlane(const OutlinePose& pose, const KnownGround& ground) {
+  return ground.plane.valid() && !(std::abs(offPlane(pose, ground.plane)) <= kDoubtfulPlane);
 }
 
 void move(Corners& corners, const Eigen::Vector2d& by) {
@@ -65,7 +64,7 @@ void SightSearch::watch(const cv::Mat& left) {
   patch_.take(left, {corner, cv::Size(kPatch, kPatch)});
 }
 
-// All of them are far away, where turning the camera moves the whole picture.
+// All of them are far away, where turning the camera moves the whole image.
 void SightSearch::follow(const cv::Mat& left) {
   const cv::Point moved = patch_.movement(left, kReach);
   const Eigen::Vector2d by(moved.x, moved.y);
@@ -98,6 +97,9 @@ std::optional<Expected<SightedRunway>> SightSearch::step(const SightFit& fit, co
   }
   if (running()) return std::nullopt;
   if (!found_) return tl::make_unexpected(failure_);
+  // It has counted as a rival of others until now: it may be the runway all the same.
+  if (isOffPlane(found_->pose, ground))
+    return tl::make_unexpected(noRunway("an outline too far off the ground's plane to begin with"));
   return std::move(*found_);
 }
 
@@ -116,7 +118,7 @@ bool SightSearch::judge(const Attempt& attempt, Expected<SightedRunway> seen, co
   if (!of_candidate) return true;
   if (SightFit::isNear(of_candidate->pose)) {
     failure_ = noRunway("too near to begin with");
-  } else if (isDoubtful(of_candidate->pose, ground)) {
+  } else if (of_candidate->pose.misfit > kDoubtfulStart) {
     failure_ = noRunway("an outline that fits what is known of runway and ground too poorly to begin with");
   } else if (found_) {
     return false;

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "far/picture_patch.h"
+#include "far/image_patch.h"
 #include "far/sight_fit.h"
 #include "far/sight_search.h"
 #include "uav_landing/results/stage_results.h"
@@ -41,7 +41,7 @@ class Sighting {
   SightSearch search_;
   std::optional<double> last_stamp_;
   std::optional<SightedRunway> last_;
-  PicturePatch patch_;
+  ImagePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s
   double wait_until_ = 0;  // stamp until which no search begins

@@ -13,7 +13,7 @@ Eigen::Vector3d rotateToWorld(const Eigen::Vector3d& paper_point, double theta) 
 }
 
 double heightOverPoint(double y_c, double z_c, double theta) {
-  return y_c * std::sin(theta) + z_c * std::cos(theta);
+  return rotateToWorld({0, y_c, z_c}, theta).z();
 }
 
 AveragedHeight averageHeight(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,

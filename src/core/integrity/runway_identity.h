@@ -17,6 +17,7 @@ class RunwayIdentity {
   /// Pairs in a row that must agree.
   static constexpr int kConfirmations = 3;
 
+  /// What a pair says of the runway.
   struct Seen {
     VanishingMemory::Direction direction;  ///< not finite when no runway is in view
     double margin;                         ///< 0 when no runway is known to be there

@@ -4,7 +4,7 @@
 
 namespace uav_landing {
 
-/// Step of the landing estimate in which a test is made (stages/kalman_height_stage.cpp).
+/// Phase of the landing estimate in which a test is made (stages/kalman_height_stage.cpp).
 enum class TestStep { kGround, kPair, kTrack, kMemory };
 
 /// The consequence of a failure.

@@ -101,6 +101,7 @@ struct KalmanHeightStage::Implementation {
     if (!std::isfinite(in.stamp())) return withoutStamp(result);
     std::optional<ScopedTimer> timer;
     timer.emplace(timings, "reconstruction");
+    // Phase "ground".
     const LandingClock::Time time = clock.follow(in.stamp());
     in.T = time.T;
     if (time.jump) startAnew();
@@ -114,17 +115,20 @@ struct KalmanHeightStage::Implementation {
     addFailure(result, jump);
 
     timer.emplace(timings, "kalman_filter");
+    // Phase "pair".
     const auto& [prior, ground, by_ground] = look;
     const MeasuredHeight measured = parts->measurement.propose(in, ground, by_ground, prior);
     const double duration_variance = parts->measurement.durationVariance();
     const PairVerdict pair = parts->monitor.check(in, ground, measured, prior, duration_variance);
     parts->ground.commit(pair.rig_believed, pair.rig_turned);
+    // Phase "track".
     const TrackVerdict post =
         parts->track.update(in.stamp(), measured, pair.leftOut(), speedByMotion(in, ground, measured, pair));
     parts->measurement.commit(in, ground, measured, !pair.leftOut() && !post.rejection);
     reportHeight(measured, pair, post, result);
     PairTests tests = pair.tests;
     post.addTo(tests);
+    // Phase "memory".
     const Failure waiting = guardHeight({in, look, measured, pair, post}, tests, result);
 
     if (!in.repeated()) parts->doubt.update(in, ground, tests);
@@ -164,7 +168,7 @@ struct KalmanHeightStage::Implementation {
         parts->measurement.durationVariance());
   }
 
-  // Before a pair is tested, only the doubt of the pairs before is known.
+  // By the doubt as it is: that of the pairs before until this pair has been tested.
   MotionDoubt doubtOfStep(const PairInput& in, const Ground& ground) const {
     return {parts->doubt.variance(in, ground, in.step()), parts->measurement.durationVariance()};
   }

@@ -29,7 +29,7 @@ class SightSearchTest : public testing::Test {
       pose_ = poseOf(steps_);
       const cv::Mat picture = picture_.render(pose_, steps_);
       search.follow(picture);
-      const auto found = search.step(fit(), picture, {});
+      const auto found = search.step(fit(), picture, ground_);
       if (found) return *found;
     }
     return tl::make_unexpected(Failure{Reason::kNotYet, "it does not end"});
@@ -39,6 +39,7 @@ class SightSearchTest : public testing::Test {
   RigModel model_;
   RunwayParameters runway_;
   RunwayPose pose_;
+  KnownGround ground_;
   int steps_ = 0;
 };
 
@@ -57,6 +58,30 @@ TEST_F(SightSearchTest, FindsTheOutlineWhereItHasMovedTo) {
   EXPECT_GE(steps_, 2) << "a start at the near end that shows, and one farther away";
   const Corners expected = *cornersOf(pose_, {picture_.width, picture_.length}, model_.rig);
   for (int i = 0; i < 4; ++i) EXPECT_LT((found->corners[i] - expected[i]).norm(), 2.5) << i;
+}
+
+TEST_F(SightSearchTest, BeginsWithAnOutlineOnTheGroundOnly) {
+  const auto at_rest = [&](int) { return pose_; };
+  std::optional<Failure> refusal;
+  // Of the distance of 2200 m 1 % is one standard deviation. The fit's own is small beside it.
+  for (const double off : {1.0, 2.5}) {
+    SightSearch search;
+    ground_ = {};
+    ASSERT_FALSE(search.begin(fit(), picture_.render(pose_), ground_));
+    ground_.plane.g = normalFromPitchRoll(pose_.pitch, pose_.roll) / (pose_.position.z() + off * 22);
+    ground_.plane.covariance = 1e-16 * Eigen::Matrix3d::Identity();
+    const Expected<SightedRunway> found = run(search, at_rest, 16);
+    if (off < 2) {
+      ASSERT_TRUE(found) << found.error().message();
+      EXPECT_NEAR(std::abs(offPlane(found->pose, ground_.plane)), off, 0.4);
+      // What is followed may be a little farther off.
+      ground_.plane.g = normalFromPitchRoll(pose_.pitch, pose_.roll) / (pose_.position.z() + 2.5 * 22);
+      EXPECT_FALSE(fit().problemOf(found->pose, ground_));
+    } else {
+      ASSERT_FALSE(found);
+      EXPECT_EQ(found.error().detail, "an outline too far off the ground's plane to begin with");
+    }
+  }
 }
 
 TEST_F(SightSearchTest, BareGroundHasNoCandidates) {

@@ -6,31 +6,27 @@
 namespace uav_landing {
 
 /// A square texture that repeats. The mean over any axis-aligned rectangle takes the same short time. To that
-/// end, copies averaged over 2^i x 2^j texels are kept for all i and j (a rip-map).
+/// end, levels averaged over 2^i x 2^j texels are kept for all i and j (a rip-map).
 class RipMap {
  public:
   /// texels: CV_32FC1, as wide as high, a power of two, at least 2.
   explicit RipMap(const cv::Mat& texels);
 
-  /// Mean over a rectangle of width x height texels around (x, y). Texel i covers [i, i + 1).
+  /// Mean over a rectangle of width x height texels around (x, y). Texel i covers [i, i + 1). Both extents
+  /// are positive; below one texel the finest level counts.
   ///
-  /// A copy is interpolated by a quadratic B-spline over three texels. Its variance is the same wherever
-  /// between the texels it is evaluated. The variance of linear interpolation is not, and makes the texture
-  /// flicker. Between copies the mean is interpolated linearly. So a pixel averages with a spline that has
-  /// zeros at all multiples of the pixels' own frequency. Detail that pixels cannot show does not come back
-  /// as false coarse texture that differs between the cameras. This costs as much sharpness as 0.5 px of
-  /// blur.
+  /// A level is interpolated by a quadratic B-spline over three texels, and the mean linearly between levels.
   float mean(float x, float y, float width, float height) const;
 
  private:
-  struct Copies;
-  struct Places;
-  float interpolate(const Copies& copies, const Places& places, int column, int row) const;
+  struct Levels;
+  struct Taps;
+  float interpolate(const Levels& levels, const Taps& taps, int column, int row) const;
 
-  int levels_;  ///< 2^(levels - 1) texels are the whole side
-  /// [i * levels + j]: averaged over 2^i columns and 2^j rows. They are transposed, and each ends with its
-  /// first texels again. So three texels below each other lie side by side, wherever they begin.
-  std::vector<cv::Mat> copies_;
+  int count_;  ///< 2^(count - 1) texels are the whole side
+  /// [i * count + j]: averaged over 2^i columns and 2^j rows. They are transposed, and each ends with its
+  /// first texels again. So texels below each other lie side by side, wherever they begin.
+  std::vector<cv::Mat> levels_;
 };
 
 }  // namespace uav_landing

@@ -20,7 +20,7 @@ class SurfaceBelow {
   /// post: track after this pair.
   void follow(const PairInput& in, const Ground& ground, const MeasuredHeight& measured, bool left_out,
               const TrackVerdict& post);
-  /// Ground normal of this pair, or that of the previous pairs carried on.
+  /// Ground normal of this pair, or that of the previous pairs carried on. Nothing before the first one.
   std::optional<Eigen::Vector3d> normal(const PairInput& in, const Ground& ground) const;
   /// Height above the remembered ground straight below, m. height: published. normal: of the ground.
   std::optional<GroundMemory::Below> below(double height, const Eigen::Vector3d& normal) const;

@@ -131,10 +131,10 @@ StepScale scaleOfStep(const StereoRig& rig, const PairInput& in, const Ground& g
 
 CameraTwist believedTwist(const PairInput& in, const PairVerdict& pair, const StepScale& scale,
                           const MotionDoubt& doubt) {
-  CameraTwist twist =
-      cameraTwist(in.step(), (1 + scale.change) * scale.height, scale.variance, doubt.duration_variance);
+  CameraTwist twist = cameraTwist(in.step(), (1 + scale.length_change) * scale.height, scale.variance,
+                                  doubt.duration_variance);
   twist.covariance.topLeftCorner<3, 3>() +=
-      doubtOfVelocity(in, pair, twist.velocity, scale.change, doubt.angle_variance);
+      doubtOfVelocity(in, pair, twist.velocity, scale.length_change, doubt.angle_variance);
   return twist;
 }
 

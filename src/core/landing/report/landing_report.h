@@ -40,7 +40,7 @@ Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const
 /// What makes metres of a step, whose lengths are in heights.
 struct StepScale {
   double height, variance;  ///< above the plane ahead, m, m^2
-  double change;            ///< of the step's lengths by the normal that the height refers to, as a share
+  double length_change;     ///< by the normal that the height refers to, as a share
 };
 /// result: with the published height.
 StepScale scaleOfStep(const StereoRig& rig, const PairInput& in, const Ground& ground,

@@ -18,7 +18,7 @@ namespace uav_landing {
 struct PairVerdict {
   explicit PairVerdict(const PairTests& none) : tests(none) {}
 
-  PairTests tests;             ///< tests of the steps "ground" and "pair"
+  PairTests tests;             ///< tests of the phases "ground" and "pair"
   Failure failure;             ///< why a pair that has a height is rejected
   bool angle_refused = false;  ///< whether angles from this pair must not be used either
   /// The pair passed its tests, but is rejected because previous pairs failed.

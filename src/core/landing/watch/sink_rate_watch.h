@@ -14,9 +14,10 @@ class SinkRateWatch {
  public:
   explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
 
+  /// The published height.
   struct Published {
-    const HeightFilter& filter;  ///< its height is published
-    const HeightErrors& errors;  ///< of the pair's height
+    const HeightFilter& filter;
+    const HeightErrors& errors;  ///< of the pair's height, for those that the filter does not know
   };
   /// Returns why the published height is not valid, if so. doubt: of the pair's step. tests: those made so
   /// far; sink_rate is added.

@@ -256,20 +256,20 @@ double minGradient(const ApproachAngleParameters& parameters) {
 }
 
 /// The part of the image in which lines are looked for; none when it is too small.
-std::optional<Part> partWithLines(const RectifiedView& ground, const HeadingGate* gate) {
+std::optional<Part> partWithLines(const RectifiedView& view, const HeadingGate* gate) {
   constexpr int kSmallest = 8;
-  const cv::Rect bounds = boundsOf(ground.mask);
+  const cv::Rect bounds = boundsOf(view.mask);
   if (bounds.width < kSmallest || bounds.height < kSmallest) return std::nullopt;
-  return Part{{ground.image(bounds), {}, ground.mask(bounds)}, bounds.tl(), gate};
+  return Part{{view.image(bounds), {}, view.mask(bounds)}, bounds.tl(), gate};
 }
 
 }  // namespace
 
-std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+std::vector<LineSegment> findLines(const RectifiedView& view, const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate, LineMemory& memory) {
-  std::optional<Part> part = partWithLines(ground, gate);
+  std::optional<Part> part = partWithLines(view, gate);
   if (!part) return {};
-  const double min_length = parameters.min_line_length * ground.image.rows;
+  const double min_length = parameters.min_line_length * view.image.rows;
   std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters, memory.scanner);
   keepLongest(candidates, candidates.size(), [](const RoughSegment& s) { return Ends(s.a, s.b); });
   if (candidates.size() > kMaxCandidates) {
@@ -284,16 +284,16 @@ std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAn
                       *part);
 }
 
-std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+std::vector<LineSegment> findLines(const RectifiedView& view, const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate) {
   LineMemory memory;
-  return findLines(ground, parameters, gate, memory);
+  return findLines(view, parameters, gate, memory);
 }
 
-std::vector<LineSegment> findLinesNear(const RectifiedView& ground, const std::vector<RoughSegment>& expected,
+std::vector<LineSegment> findLinesNear(const RectifiedView& view, const std::vector<RoughSegment>& expected,
                                        const ApproachAngleParameters& parameters, const HeadingGate& gate,
                                        LineMemory& memory) {
-  std::optional<Part> part = partWithLines(ground, &gate);
+  std::optional<Part> part = partWithLines(view, &gate);
   if (!part) return {};
   const cv::Size size = part->picture.image.size();
   part->picture.transposed = memory.transposed.image({size.height, size.width});
@@ -305,7 +305,7 @@ std::vector<LineSegment> findLinesNear(const RectifiedView& ground, const std::v
     if (ends && part->passes(ends->first, ends->second))
       candidates.push_back({ends->first, ends->second, line.brighter});
   }
-  const double min_length = parameters.min_line_length * ground.image.rows;
+  const double min_length = parameters.min_line_length * view.image.rows;
   return ofWholeImage(refined(candidates, *part, min_length, minGradient(parameters)), *part);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <vector>
 
 #include "base/image_memory.h"
@@ -22,18 +21,18 @@ struct LineMemory {
 /// Lines of the ground (paper, section 2). They are straight edges followed from scan lines, or found by a
 /// Hough transform of the Canny edges (hough_method). Then each is fitted to the gradient along it.
 /// Deterministic. Returns an empty list when there are none.
-/// ground: its mask is set where lines are looked for (already eroded). gate: only lines that pass it are
-/// fitted. The others follow in the list, as they were found, good to half a pixel. Null:
-/// all lines are fitted.
-std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+/// view: its mask is set where lines are looked for (already eroded); its row times are not used. gate: only
+/// lines that pass it are fitted. The others follow in the list, as they were found, good to half a pixel.
+/// Null: all lines are fitted.
+std::vector<LineSegment> findLines(const RectifiedView& view, const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate, LineMemory& memory);
 /// The same with memory of its own.
-std::vector<LineSegment> findLines(const RectifiedView& ground, const ApproachAngleParameters& parameters,
+std::vector<LineSegment> findLines(const RectifiedView& view, const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate = nullptr);
 
 /// Those of the expected lines that exist and pass the gate, fitted to the gradient as above. expected: off
 /// by up to 2 px; they may reach beyond the image.
-std::vector<LineSegment> findLinesNear(const RectifiedView& ground, const std::vector<RoughSegment>& expected,
+std::vector<LineSegment> findLinesNear(const RectifiedView& view, const std::vector<RoughSegment>& expected,
                                        const ApproachAngleParameters& parameters, const HeadingGate& gate,
                                        LineMemory& memory);
 

@@ -23,27 +23,26 @@ constexpr double kWorthlessY = 0.1;  // 1 sigma as a share of the runway's width
 PositionFilter::PositionFilter(const KalmanHeightParameters& parameters) : separation_(parameters) {}
 
 void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
-                             const ApproachAngleResult::Motion& turn, const PositionSeparation::Height& scale,
-                             LandingResult& result) {
-  const double height = scale.value;
+                             const ApproachAngleResult::Motion& turn,
+                             const PositionSeparation::Height& height, LandingResult& result) {
+  const double h = height.value;
   const double seconds = last_stamp_ ? result.stamp - *last_stamp_ : 0;
   last_stamp_ = result.stamp;
   followDirection(approach.vanishing_direction, turn, seconds);
-  move(approach, normal, height, seconds);
+  move(approach, normal, h, seconds);
   const ApproachAngleResult::Runway& seen = approach.runway;
   const auto metric = [&](double ratio, double variance) {
-    return variance * height * height + ratio * ratio * scale.variance;
+    return variance * h * h + ratio * ratio * height.variance;
   };
-  if (std::isfinite(height) && !seen.failure && seen.y_variance > 0) {
+  if (std::isfinite(h) && !seen.failure && seen.y_variance > 0) {
     if (std::isfinite(seen.width)) {
-      result.runway_width = width_ = seen.width * height;
+      result.runway_width = width_ = seen.width * h;
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
-    y_.update(seen.y * height, metric(seen.y, seen.y_variance), 0, seconds);
-    separation_.update(seen.y_without, scale, seconds);
+    y_.update(seen.y * h, metric(seen.y, seen.y_variance), 0, seconds);
+    separation_.update(seen.y_without, height, seconds);
     if (!seen.threshold_failure && seen.x_variance > 0)
-      x_.update(seen.x * height, metric(seen.x, seen.x_variance),
-                seen.x_systematic_variance * height * height, seconds);
+      x_.update(seen.x * h, metric(seen.x, seen.x_variance), seen.x_systematic_variance * h * h, seconds);
   }
   x_.forgetAbove(kWorthlessX * width_);
   y_.forgetAbove(kWorthlessY * width_);

@@ -21,7 +21,7 @@ class PositionFilter {
   /// in the result, which has its stamp.
   /// - normal: of the ground, left camera frame.
   /// - turn: motion since the previous pair, used for its rotation.
-  /// - height: NaN while it is not valid.
+  /// - height: its value is NaN while the height is not valid.
   void process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
                const ApproachAngleResult::Motion& turn, const PositionSeparation::Height& height,
                LandingResult& result);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
@@ -28,7 +27,7 @@ class RunwayTracker {
                 const RunwayParameters& runway = {});
 
   /// Processes one pair.
-  /// - left: its image, with the camera's whole mask.
+  /// - left: the rectified left image with the camera's whole mask and its row times.
   /// - approach: result of this pair, with its stamp, n and the step.
   /// - direction: vanishing direction and lines of this pair.
   /// - height: from stereo, m, or NaN. Without it only the left view is used.

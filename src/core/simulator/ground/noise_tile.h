@@ -8,6 +8,12 @@ namespace uav_landing {
 
 /// A square of random texture that repeats without a seam, with mean 0 and variance 1. Ground that is seen at
 /// a grazing angle neither aliases nor blurs sideways.
+///
+/// The quadratic B-spline between texels changes the variance little, by where it is evaluated. Linear
+/// interpolation changes it by a factor of two, and makes the texture flicker. With the levels a pixel
+/// averages with a spline that has zeros at all multiples of the pixels' own frequency. So detail that pixels
+/// cannot show does not come back as false coarse texture that differs between the cameras. This costs as
+/// much sharpness as 0.5 px of blur.
 class NoiseTile {
  public:
   static constexpr int kSize = 512;  ///< texels along a side

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <random>
+#include <utility>
 
 namespace uav_landing {
 namespace {
@@ -21,12 +22,12 @@ cv::Mat someTexels() {
 
 /// The mean over whole blocks of 2^i x 2^j texels.
 cv::Mat blocks(const cv::Mat& texels, int i, int j) {
-  cv::Mat mean = texels;
-  for (int k = 0; k < i; ++k)
-    cv::resize(mean.clone(), mean, {mean.cols / 2, mean.rows}, 0, 0, cv::INTER_AREA);
-  for (int k = 0; k < j; ++k)
-    cv::resize(mean.clone(), mean, {mean.cols, mean.rows / 2}, 0, 0, cv::INTER_AREA);
-  return mean;
+  const int width = 1 << i, height = 1 << j;
+  cv::Mat means(kSize / height, kSize / width, CV_32F);
+  for (int v = 0; v < means.rows; ++v)
+    for (int u = 0; u < means.cols; ++u)
+      means.at<float>(v, u) = static_cast<float>(cv::mean(texels({u * width, v * height, width, height}))[0]);
+  return means;
 }
 
 /// Quadratic B-spline, by its definition.
@@ -36,13 +37,13 @@ float spline(float t) {
   return away < 1.5f ? 0.5f * (1.5f - away) * (1.5f - away) : 0.0f;
 }
 
-/// Each texel of a copy weighted by the spline, in the tile that repeats.
-float interpolate(const cv::Mat& copy, float x, float y) {
+/// Each texel of a level weighted by the spline, in the tile that repeats.
+float interpolate(const cv::Mat& level, float x, float y) {
   float sum = 0;
   for (int v = static_cast<int>(std::floor(y)) - 2; v <= std::floor(y) + 2; ++v)
     for (int u = static_cast<int>(std::floor(x)) - 2; u <= std::floor(x) + 2; ++u)
       sum += spline(x - (static_cast<float>(u) + 0.5f)) * spline(y - (static_cast<float>(v) + 0.5f)) *
-             copy.at<float>((v + 64 * copy.rows) % copy.rows, (u + 64 * copy.cols) % copy.cols);
+             level.at<float>((v + 64 * level.rows) % level.rows, (u + 64 * level.cols) % level.cols);
   return sum;
 }
 
@@ -87,7 +88,8 @@ TEST(RipMap, ARectangleOfWholeTexelsAtTheirCentreIsTheSplineOfThem) {
   EXPECT_FLOAT_EQ(map.mean(kSize - 0.5f, 0.5f, 1, 1), 0.75f * 0.75f);
   EXPECT_FLOAT_EQ(map.mean(0.5f, 0.5f, 1, 1), 0.125f * 0.75f) << "it repeats along x";
   EXPECT_FLOAT_EQ(map.mean(-0.5f, kSize - 0.5f, 1, 1), 0.75f * 0.125f) << "and along y";
-  EXPECT_FLOAT_EQ(map.mean(2.5f, 0.5f, 1, 1), 0) << "three texels count";
+  EXPECT_FLOAT_EQ(map.mean(1.5f, 0.5f, 1, 1), 0) << "three texels count";
+  EXPECT_FLOAT_EQ(map.mean(-0.5f, 2.5f, 1, 1), 0);
 }
 
 TEST(RipMap, OverTheWholeSideItIsTheMeanOfAll) {
@@ -100,7 +102,8 @@ TEST(RipMap, RefusesWhatIsNoSquareOfAPowerOfTwo) {
   EXPECT_THROW(RipMap(cv::Mat(8, 4, CV_32F)), cv::Exception);
   EXPECT_THROW(RipMap(cv::Mat(6, 6, CV_32F)), cv::Exception);
   EXPECT_THROW(RipMap(cv::Mat(8, 8, CV_8U)), cv::Exception);
-  EXPECT_THROW(RipMap(cv::Mat()), cv::Exception);
+  EXPECT_THROW(RipMap(cv::Mat(1, 1, CV_32F)), cv::Exception);
+  EXPECT_THROW(RipMap(cv::Mat(0, 0, CV_32F)), cv::Exception);
 }
 
 }  // namespace

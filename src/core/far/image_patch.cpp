@@ -1,15 +1,15 @@
-#include "far/picture_patch.h"
+#include "far/image_patch.h"
 
 #include <opencv2/imgproc.hpp>
 
 namespace uav_landing {
 
-void PicturePatch::take(const cv::Mat& image, const cv::Rect& place) {
+void ImagePatch::take(const cv::Mat& image, const cv::Rect& place) {
   place_ = place & cv::Rect(0, 0, image.cols, image.rows);
   grey_ = place_.area() > 0 ? image(place_).clone() : cv::Mat();
 }
 
-cv::Point PicturePatch::movement(const cv::Mat& image, int reach) const {
+cv::Point ImagePatch::movement(const cv::Mat& image, int reach) const {
   const cv::Rect around(place_.x - reach, place_.y - reach, place_.width + 2 * reach,
                         place_.height + 2 * reach);
   const cv::Rect inside = around & cv::Rect(0, 0, image.cols, image.rows);

@@ -4,8 +4,8 @@
 
 namespace uav_landing {
 
-/// A piece of a picture, found again in the next one.
-class PicturePatch {
+/// A piece of an image, found again in the next one.
+class ImagePatch {
  public:
   /// place: in the image; what lies outside is left out.
   void take(const cv::Mat& image, const cv::Rect& place);
