@@ -19,8 +19,7 @@ SNIPPET_HEIGHTS, SNIPPET_NOISE = (3, 10, 30), (1, 2, 5)
 # Rendering them takes most of the time: 63 rows of the default preset, 18 of the others.
 SNIPPET_SEEDS, SNIPPET_SEEDS_OF_OTHERS = 7, 2
 PROBE = 0.5  # s of each configuration, to see whether the simulator changed
-SIMULATOR = ("src/core/simulator", "src/core/kernels/image/rip_map.h", "src/core/kernels/image/rip_map.cpp",
-             "include/uav_landing/simulator", "src/tools/simulation", "src/tools/bags")
+SIMULATOR = ("src/core/simulator", "include/uav_landing/simulator", "src/tools/simulation", "src/tools/bags")
 STAGES = {"stereo_depth", "approach_angle", "kalman_height"}
 
 
@@ -54,8 +53,7 @@ def invalid_too(preset):
 
 
 def files_below(folder):
-    """Returns them sorted; a file is there by itself."""
-    return [folder] if folder.is_file() else sorted(file for file in folder.rglob("*") if file.is_file())
+    return sorted(file for file in folder.rglob("*") if file.is_file())
 
 
 def digest(files):

@@ -10,7 +10,6 @@ uav_landing_add_gtest(bilinear_rows_test test/core/kernels/image/bilinear_rows_t
 uav_landing_add_gtest(harris_rows_test test/core/kernels/image/harris_rows_test.cpp)
 uav_landing_add_gtest(line_shades_test test/core/kernels/image/line_shades_test.cpp)
 uav_landing_add_gtest(line_view_test test/core/kernels/image/line_view_test.cpp)
-uav_landing_add_gtest(rip_map_test test/core/kernels/image/rip_map_test.cpp)
 uav_landing_add_gtest(slanted_row_test test/core/kernels/image/slanted_row_test.cpp)
 uav_landing_add_gtest(smoothing_test test/core/kernels/image/smoothing_test.cpp)
 uav_landing_add_gtest(transpose_test test/core/kernels/image/transpose_test.cpp)

@@ -14,7 +14,6 @@
 #include "progress_bar.h"
 #include "simulator/ground/ground_profile.h"
 #include "uav_landing/geometry/rig_check.h"
-#include "uav_landing/simulator/approach_simulator.h"
 
 namespace {
 
@@ -127,8 +126,6 @@ class Campaign {
 
   void flySimulated(uint64_t seed) {
     const SimulatorParameters drawn = draw(seed);
-    // Seeds that cannot be flown without a fault are left out with all faults.
-    if (!ApproachSimulator::create(drawn)) return;
     std::map<std::string, std::unique_ptr<SimulatedFlight>> flights;  // by the faults that change the scene
     const bool flat = GroundProfile(drawn.profile).flat();
     for (const FaultCombination& faults : choice_.combinations(seed)) {

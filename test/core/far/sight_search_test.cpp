@@ -35,6 +35,14 @@ class SightSearchTest : public testing::Test {
     return tl::make_unexpected(Failure{Reason::kNotYet, "it does not end"});
   }
 
+  /// Ground that stereo knows so many standard deviations below the runway. One is 1 % of the distance of
+  /// 2200 m; the fit's own is small beside it.
+  void groundBelow(double sigmas) {
+    ground_.plane.g = normalFromPitchRoll(pose_.pitch, pose_.roll) /
+                      (pose_.position.z() + sigmas * 0.01 * -pose_.position.x());
+    ground_.plane.covariance = 1e-16 * Eigen::Matrix3d::Identity();
+  }
+
   RunwayPicture picture_;
   RigModel model_;
   RunwayParameters runway_;
@@ -62,20 +70,17 @@ TEST_F(SightSearchTest, FindsTheOutlineWhereItHasMovedTo) {
 
 TEST_F(SightSearchTest, BeginsWithAnOutlineOnTheGroundOnly) {
   const auto at_rest = [&](int) { return pose_; };
-  std::optional<Failure> refusal;
-  // Of the distance of 2200 m 1 % is one standard deviation. The fit's own is small beside it.
   for (const double off : {1.0, 2.5}) {
     SightSearch search;
     ground_ = {};
     ASSERT_FALSE(search.begin(fit(), picture_.render(pose_), ground_));
-    ground_.plane.g = normalFromPitchRoll(pose_.pitch, pose_.roll) / (pose_.position.z() + off * 22);
-    ground_.plane.covariance = 1e-16 * Eigen::Matrix3d::Identity();
+    groundBelow(off);
     const Expected<SightedRunway> found = run(search, at_rest, 16);
     if (off < 2) {
       ASSERT_TRUE(found) << found.error().message();
       EXPECT_NEAR(std::abs(offPlane(found->pose, ground_.plane)), off, 0.4);
       // What is followed may be a little farther off.
-      ground_.plane.g = normalFromPitchRoll(pose_.pitch, pose_.roll) / (pose_.position.z() + 2.5 * 22);
+      groundBelow(2.5);
       EXPECT_FALSE(fit().problemOf(found->pose, ground_));
     } else {
       ASSERT_FALSE(found);
@@ -95,13 +100,17 @@ TEST_F(SightSearchTest, TwoRunwaysThatShowAlikeLeaveItOpen) {
   const cv::Mat one = picture_.render(pose_);
   cv::Mat two = one.clone();
   one.colRange(290, 350).copyTo(two.colRange(370, 430));  // the runway once more, farther to the right
-  SightSearch search;
-  ASSERT_FALSE(search.begin(fit(), two, {}));
-  std::optional<Expected<SightedRunway>> found;
-  for (int i = 0; i < 24 && !found; ++i) found = search.step(fit(), two, {});
-  ASSERT_TRUE(found.has_value());
-  ASSERT_FALSE(*found);
-  EXPECT_EQ(found->error().detail, "more than one outline may be the runway's");
+  // Also where both lie too far off the ground to begin with.
+  for (const double off : {0.0, 2.5}) {
+    groundBelow(off);
+    SightSearch search;
+    ASSERT_FALSE(search.begin(fit(), two, {}));
+    std::optional<Expected<SightedRunway>> found;
+    for (int i = 0; i < 24 && !found; ++i) found = search.step(fit(), two, ground_);
+    ASSERT_TRUE(found.has_value());
+    ASSERT_FALSE(*found);
+    EXPECT_EQ(found->error().detail, "more than one outline may be the runway's") << off;
+  }
 }
 
 }  // namespace

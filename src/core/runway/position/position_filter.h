@@ -19,6 +19,7 @@ class PositionFilter {
 
   /// Processes one pair. Fills x, y, the runway's width, their variances and the protection level of y
   /// in the result, which has its stamp.
+  ///
   /// - normal: of the ground, left camera frame.
   /// - turn: motion since the previous pair, used for its rotation.
   /// - height: its value is NaN while the height is not valid.

@@ -1,19 +1,15 @@
 #pragma once
 
 #include <cstdint>
-
-#include "kernels/image/rip_map.h"
+#include <opencv2/core.hpp>
+#include <vector>
 
 namespace uav_landing {
 
-/// A square of random texture that repeats without a seam, with mean 0 and variance 1. Ground that is seen at
-/// a grazing angle neither aliases nor blurs sideways.
-///
-/// The quadratic B-spline between texels changes the variance little, by where it is evaluated. Linear
-/// interpolation changes it by a factor of two, and makes the texture flicker. With the levels a pixel
-/// averages with a spline that has zeros at all multiples of the pixels' own frequency. So detail that pixels
-/// cannot show does not come back as false coarse texture that differs between the cameras. This costs as
-/// much sharpness as 0.5 px of blur.
+/// A square of random texture that repeats without a seam, with mean 0 and variance 1. The mean over any
+/// axis-aligned rectangle takes the same short time. To that end, copies averaged over 2^i x 2^j texels are
+/// kept for all i and j (a rip-map). So ground that is seen at a grazing angle neither aliases nor blurs
+/// sideways.
 class NoiseTile {
  public:
   static constexpr int kSize = 512;  ///< texels along a side
@@ -24,10 +20,14 @@ class NoiseTile {
 
   /// Mean over a rectangle of width x height texels around (x, y). The tile repeats. Texel i covers [i, i +
   /// 1).
-  float mean(float x, float y, float width, float height) const { return map_.mean(x, y, width, height); }
+  float mean(float x, float y, float width, float height) const;
 
  private:
-  RipMap map_;
+  struct Taps;
+  float interpolate(int i, int j, const Taps& column, const Taps& row) const;
+
+  static constexpr int kLevels = 10;  ///< 2^9 texels are the whole side
+  std::vector<cv::Mat> levels_;       ///< [i * kLevels + j]: averaged over 2^i columns and 2^j rows
 };
 
 }  // namespace uav_landing
