@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "integrity/stamp_order.h"
+#include "integrity/tests/stamp_order.h"
 
 namespace uav_landing {
 

@@ -156,6 +156,10 @@ RunwaySight toMessage(const ApproachAngleResult::Sight& sight) {
   message.length_variance = sight.length_variance;
   toArray(sight.height_without, message.height_without);
   toArray(sight.variance_without, message.variance_without);
+  message.height_by_chart = sight.height_by_chart;
+  message.disparity = sight.disparity;
+  message.disparity_variance = sight.disparity_variance;
+  message.height_by_bias = sight.height_by_bias;
   message.size_over_chart = sight.size_over_chart;
   message.size_over_chart_variance = sight.size_over_chart_variance;
   return message;
@@ -174,6 +178,10 @@ ApproachAngleResult::Sight toResult(const RunwaySight& message) {
   sight.length_variance = message.length_variance;
   fromArray(message.height_without, sight.height_without);
   fromArray(message.variance_without, sight.variance_without);
+  sight.height_by_chart = message.height_by_chart;
+  sight.disparity = message.disparity;
+  sight.disparity_variance = message.disparity_variance;
+  sight.height_by_bias = message.height_by_bias;
   sight.size_over_chart = message.size_over_chart;
   sight.size_over_chart_variance = message.size_over_chart_variance;
   return sight;

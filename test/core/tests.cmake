@@ -108,8 +108,8 @@ uav_landing_add_gtest(aligned_rows_test test/core/stereo/photometric/aligned_row
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(band_disparities_test test/core/stereo/photometric/band_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(band_evidence_test test/core/stereo/photometric/band_evidence_test.cpp)
-uav_landing_add_gtest(texture_bands_test test/core/stereo/photometric/texture_bands_test.cpp)
+uav_landing_add_gtest(band_evidence_test test/core/stereo/bands/band_evidence_test.cpp)
+uav_landing_add_gtest(texture_bands_test test/core/stereo/bands/texture_bands_test.cpp)
 uav_landing_add_gtest(block_disparity_test test/core/stereo/photometric/block_disparity_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(block_disparities_test test/core/stereo/photometric/block_disparities_test.cpp
@@ -173,6 +173,8 @@ uav_landing_add_gtest(outline_pose_test test/core/far/outline_pose_test.cpp)
 uav_landing_add_gtest(outline_fit_test test/core/far/outline_fit_test.cpp)
 uav_landing_add_gtest(edge_readings_test test/core/far/edge_readings_test.cpp)
 uav_landing_add_gtest(outline_search_test test/core/far/outline_search_test.cpp)
+uav_landing_add_gtest(stereo_scale_test test/core/far/stereo_scale_test.cpp)
+uav_landing_add_gtest(surface_disparity_test test/core/far/surface_disparity_test.cpp)
 uav_landing_add_gtest(sight_search_test test/core/far/sight_search_test.cpp)
 uav_landing_add_gtest(sighting_test test/core/far/sighting_test.cpp)
 
@@ -198,19 +200,19 @@ uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.c
   SOURCES test/support/ground_renderer.cpp)
 
 # integrity
-uav_landing_add_gtest(clock_watch_test test/core/integrity/clock_watch_test.cpp)
-uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
-uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
-uav_landing_add_gtest(normal_doubt_test test/core/integrity/normal_doubt_test.cpp)
-uav_landing_add_gtest(pair_tests_test test/core/integrity/pair_tests_test.cpp)
-uav_landing_add_gtest(recovery_test test/core/integrity/recovery_test.cpp)
-uav_landing_add_gtest(solution_separation_test test/core/integrity/solution_separation_test.cpp)
-uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cpp)
-uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
-uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
-uav_landing_add_gtest(vanishing_memory_test test/core/integrity/vanishing_memory_test.cpp)
-uav_landing_add_gtest(runway_identity_test test/core/integrity/runway_identity_test.cpp)
-uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
+uav_landing_add_gtest(clock_watch_test test/core/integrity/tests/clock_watch_test.cpp)
+uav_landing_add_gtest(ground_memory_test test/core/integrity/memory/ground_memory_test.cpp)
+uav_landing_add_gtest(height_memory_test test/core/integrity/memory/height_memory_test.cpp)
+uav_landing_add_gtest(normal_doubt_test test/core/integrity/tests/normal_doubt_test.cpp)
+uav_landing_add_gtest(pair_tests_test test/core/integrity/tests/pair_tests_test.cpp)
+uav_landing_add_gtest(recovery_test test/core/integrity/tests/recovery_test.cpp)
+uav_landing_add_gtest(solution_separation_test test/core/integrity/tests/solution_separation_test.cpp)
+uav_landing_add_gtest(speed_memory_test test/core/integrity/memory/speed_memory_test.cpp)
+uav_landing_add_gtest(stamp_order_test test/core/integrity/tests/stamp_order_test.cpp)
+uav_landing_add_gtest(stamp_scatter_test test/core/integrity/tests/stamp_scatter_test.cpp)
+uav_landing_add_gtest(vanishing_memory_test test/core/integrity/memory/vanishing_memory_test.cpp)
+uav_landing_add_gtest(runway_identity_test test/core/integrity/tests/runway_identity_test.cpp)
+uav_landing_add_gtest(velocity_memory_test test/core/integrity/memory/velocity_memory_test.cpp)
 
 # landing
 uav_landing_add_gtest(runway_track_test test/core/landing/runway_track_test.cpp)

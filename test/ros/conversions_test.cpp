@@ -150,8 +150,10 @@ ApproachAngleResult distinctApproachAngle() {
   sight.failure = {Reason::kNoRunway, "no outline"};
   fill(sight.position);
   fill(sight.covariance);
-  for (double* number : {&sight.yaw, &sight.yaw_variance, &sight.width, &sight.width_variance, &sight.length,
-                         &sight.length_variance, &sight.size_over_chart, &sight.size_over_chart_variance})
+  for (double* number :
+       {&sight.yaw, &sight.yaw_variance, &sight.width, &sight.width_variance, &sight.length,
+        &sight.length_variance, &sight.height_by_chart, &sight.disparity, &sight.disparity_variance,
+        &sight.height_by_bias, &sight.size_over_chart, &sight.size_over_chart_variance})
     *number = next();
   fill(sight.height_without);
   fill(sight.variance_without);
@@ -351,6 +353,10 @@ TEST(Conversions, TheSightOfTheRunwayComesBackBitForBit) {
   EXPECT_EQ(back.length_variance, sight.length_variance);
   EXPECT_EQ(back.height_without, sight.height_without);
   EXPECT_EQ(back.variance_without, sight.variance_without);
+  EXPECT_EQ(back.height_by_chart, sight.height_by_chart);
+  EXPECT_EQ(back.disparity, sight.disparity);
+  EXPECT_EQ(back.disparity_variance, sight.disparity_variance);
+  EXPECT_EQ(back.height_by_bias, sight.height_by_bias);
   EXPECT_EQ(back.size_over_chart, sight.size_over_chart);
   EXPECT_EQ(back.size_over_chart_variance, sight.size_over_chart_variance);
 }
@@ -545,6 +551,10 @@ TEST(Conversions, EachFieldOfApproachAngleHasItsOwnNumber) {
   EXPECT_FIELD(message.sight, result.sight, length_variance);
   EXPECT_ROW_MAJOR(message.sight, result.sight, height_without);
   EXPECT_ROW_MAJOR(message.sight, result.sight, variance_without);
+  EXPECT_FIELD(message.sight, result.sight, height_by_chart);
+  EXPECT_FIELD(message.sight, result.sight, disparity);
+  EXPECT_FIELD(message.sight, result.sight, disparity_variance);
+  EXPECT_FIELD(message.sight, result.sight, height_by_bias);
   EXPECT_FIELD(message.sight, result.sight, size_over_chart);
   EXPECT_FIELD(message.sight, result.sight, size_over_chart_variance);
   EXPECT_EQ(message.imu.reason, "rejected: off");

@@ -2,7 +2,7 @@
 // not.
 #include <gtest/gtest.h>
 
-#include "integrity/test_catalogue.h"
+#include "integrity/tests/test_catalogue.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrity/pair_tests.h"
+#include "integrity/tests/pair_tests.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/pair_input.h"

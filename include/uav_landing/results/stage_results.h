@@ -186,6 +186,13 @@ struct ApproachAngleResult {
     /// The height without one of the elements: the chart's width, its length, the ground's normal; m, m^2.
     Eigen::Vector3d height_without = Eigen::Vector3d::Constant(kUnknown);
     Eigen::Vector3d variance_without = Eigen::Vector3d::Constant(kUnknown);
+    /// By how much the height grows with the chart's sizes, m for an error as large as the sizes; the most
+    /// for width, length, or both.
+    double height_by_chart = kUnknown;
+    /// Disparity of the runway itself, px, px^2. Not known where stereo does not show the runway.
+    /// height_by_bias: by how much the height changes when the calibration is off by one standard deviation,
+    /// m; 0 without a disparity.
+    double disparity = kUnknown, disparity_variance = kUnknown, height_by_bias = 0;
     /// Size of the surface by stereo, over the chart's; unknown without stereo.
     double size_over_chart = kUnknown, size_over_chart_variance = kUnknown;
   };

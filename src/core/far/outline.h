@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 
@@ -21,6 +22,9 @@ struct RunwayPose {
   /// A point of the runway frame in the camera's.
   Eigen::Vector3d seen(const Eigen::Vector3d& point) const { return cameraFromRunway() * (point - position); }
 };
+
+/// The plane of the surface, without a covariance.
+GroundPlane planeOf(const RunwayPose& pose);
 
 /// Of the runway's surface, m.
 struct RunwaySize {
@@ -54,8 +58,16 @@ struct OutlineSide {
   Eigen::Vector2d movedTo(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
 };
 
+/// Length of the surface by what is known of it, else by how it gets narrower, m.
+double lengthOf(const Corners& corners, const OutlineLook& look);
+/// How many rows of the image so many metres of the surface take up at its near end, px. look: with a width.
+double rowsOfMetres(double metres, const Corners& corners, const OutlineLook& look);
+
 /// The image of the surface's corners; none unless all are in front of the camera.
 std::optional<Corners> cornersOf(const RunwayPose& pose, const RunwaySize& size, const StereoRig& rig);
+
+/// Width between the long sides of an outline in a row of the image, px.
+double widthInRow(const Corners& corners, double row);
 
 /// How far each side of the corners lies inside of the reference's, at both ends of that, side by side.
 Vector8d movedInward(const Corners& reference, const Corners& corners);

@@ -13,7 +13,11 @@ constexpr int kIterations = 12;
 constexpr double kSettled = 1e-4;        // of a standard deviation
 constexpr double kLevel = 10 * kDegree;  // 1 sigma of roll and pitch of a camera that flies an approach
 constexpr double kUsualWidth = 35, kUsualLength = 1800;  // m
-constexpr double kAnySize = 0.8;      // 1 sigma of the logarithm of a size that is not known
+constexpr double kAnySize = 0.8;  // 1 sigma of the logarithm of a size that is not known
+// What stereo, chart and outline have too many. Where they differ by more, one of them is wrong: then their
+// errors are larger than they say (Birge 1932).
+constexpr double kUsualMisfit = 5;
+constexpr double kDoubtedChart = 3;   // standard deviations from which on a size counts less and less
 constexpr double kHills = 0.01;       // of the distance: 1 sigma of the threshold off the plane before it
 constexpr double kLargestStep = 0.3;  // of a distance, in one iteration
 
@@ -26,27 +30,33 @@ tl::unexpected<Failure> noPose(const char* why) {
   return tl::make_unexpected(Failure{Reason::kNoRunway, why});
 }
 
-/// The threshold T against a plane: where it lies on it, g . T = 1.
-struct OnPlane {
-  double value;     // g . T
-  State slope;      // derivative of the value
-  double variance;  // of the value, by the plane and by hills
+double stepOf(const State& state, int i) { return i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6; }
 
-  OnPlane(const State& state, const GroundPlane& plane) : value(at(state, plane)) {
+/// A number that a state tells, with its derivative.
+struct Told {
+  double value;
+  State slope;
+
+  template <class At>
+  Told(const State& state, const At& at) : value(at(state)) {
     for (int i = 0; i < 8; ++i) {
       State moved = state;
-      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
+      const double step = stepOf(state, i);
       moved[i] += step;
-      slope[i] = (at(moved, plane) - value) / step;
+      slope[i] = (at(moved) - value) / step;
     }
+  }
+};
+
+/// The threshold T against a plane: g . T, which is 1 where it lies on it.
+struct OnPlane : Told {
+  double variance;  // of the value, by the plane and by hills
+
+  OnPlane(const State& state, const GroundPlane& plane)
+      : Told(state, [&](const State& s) { return plane.g.dot(poseOf(s).seen(Eigen::Vector3d::Zero())); }) {
     const Eigen::Vector3d threshold = poseOf(state).seen(Eigen::Vector3d::Zero());
     const double hills = kHills * threshold.norm() * plane.g.norm();
     variance = threshold.dot(plane.covariance * threshold) + hills * hills;
-  }
-
- private:
-  static double at(const State& state, const GroundPlane& plane) {
-    return plane.g.dot(poseOf(state).seen(Eigen::Vector3d::Zero()));
   }
 };
 
@@ -75,6 +85,7 @@ class Fit {
   bool hasLength() const { return elements_.length && known_.chart.length > 0; }
   bool hasPlane() const { return elements_.stereo && known_.plane.valid(); }
   bool hasNormal() const { return elements_.normal && known_.normal; }
+  bool hasDisparity() const { return elements_.disparity && known_.disparity; }
 
   std::optional<State> start() const {
     const Corners c = movedBy(seen_.reference, seen_.inward);
@@ -87,9 +98,9 @@ class Fit {
     if (hasLength()) size.length = known_.chart.length;
     if (!hasWidth() && hasLength()) size.width = near_width * size.length * taper / (1 - taper) / rig_.fx;
     if (!hasWidth() && !hasLength()) {
-      const double inverse_depth = known_.plane.inverseDepth(rig_.ray(near.x(), near.y()));
-      if (!hasPlane() || !(inverse_depth > 0)) return std::nullopt;
-      size.width = near_width / rig_.fx / inverse_depth;
+      const std::optional<double> inverse_depth = inverseDepthAt(near);
+      if (!inverse_depth || !(*inverse_depth > 0)) return std::nullopt;
+      size.width = near_width / rig_.fx / *inverse_depth;
     }
     const double distance = rig_.fx * size.width / near_width;
     if (!hasLength()) size.length = distance * (1 - taper) / taper;
@@ -114,7 +125,7 @@ class Fit {
     Matrix8d slopes;
     for (int i = 0; i < 8; ++i) {
       State moved = state;
-      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
+      const double step = stepOf(state, i);
       moved[i] += step;
       const auto there = cornersOf(poseOf(moved), sizeOf(moved), rig_);
       if (!there) return std::nullopt;
@@ -129,17 +140,54 @@ class Fit {
     return equations;
   }
 
- private:
-  void addKnowledge(const State& state, Equations& equations) const {
-    const auto size = [&](int i, bool given, double chart, double stddev, double usual) {
-      equations.addDirectly(i, std::log(given ? chart : usual) - state[i], given ? stddev / chart : kAnySize);
+  /// Sets by how much the height follows what is known. Needs the covariance.
+  void addInfluences(const State& state, OutlinePose& result) const {
+    const auto bySize = [&](int i, const SizePrior& prior) {
+      return result.covariance(2, i) / (prior.stddev * prior.stddev);
     };
-    size(6, hasWidth(), known_.chart.width, known_.width_stddev, kUsualWidth);
-    size(7, hasLength(), known_.chart.length, known_.length_stddev, kUsualLength);
+    if (hasWidth()) result.height_by_width = bySize(6, widthPrior(state));
+    if (hasLength()) result.height_by_length = bySize(7, lengthPrior(state));
+    if (!hasDisparity()) return;
+    const State gain = result.covariance * expectedDisparity(state).slope / known_.disparity->variance;
+    result.height_by_disparity = gain[2];
+  }
+
+ private:
+  /// What is known of the logarithm of a size: by how much it is missed, and 1 sigma.
+  struct SizePrior {
+    double missing, stddev;
+  };
+  SizePrior widthPrior(const State& state) const {
+    if (!hasWidth()) return {std::log(kUsualWidth) - state[6], kAnySize};
+    return byChart(known_.chart.width, known_.width_stddev, state[6]);
+  }
+  SizePrior lengthPrior(const State& state) const {
+    if (!hasLength()) return {std::log(kUsualLength) - state[7], kAnySize};
+    return byChart(known_.chart.length, known_.length_stddev, state[7]);
+  }
+  // A chart may be wrong, and what shows may be paint within the edges. Stereo can tell.
+  SizePrior byChart(double chart, double stddev, double logarithm) const {
+    const double missing = std::log(chart) - logarithm, known = stddev / chart;
+    const double far = hasDisparity() ? missing / (kDoubtedChart * known) : 0;
+    return {missing, known * std::sqrt(1 + far * far)};
+  }
+
+  /// Of the threshold, by stereo.
+  std::optional<double> inverseDepthAt(const Eigen::Vector2d& near) const {
+    if (hasPlane()) return known_.plane.inverseDepth(rig_.ray(near.x(), near.y()));
+    if (hasDisparity()) return known_.disparity->value / rig_.fb();
+    return std::nullopt;
+  }
+
+  void addKnowledge(const State& state, Equations& equations) const {
+    const SizePrior width = widthPrior(state), length = lengthPrior(state);
+    equations.addDirectly(6, width.missing, width.stddev);
+    equations.addDirectly(7, length.missing, length.stddev);
     equations.addDirectly(3, -state[3], kLevel);
     equations.addDirectly(4, -state[4], kLevel);
     if (hasNormal()) addNormal(state, equations);
     if (hasPlane()) addPlane(state, equations);
+    if (hasDisparity()) addDisparity(state, equations);
   }
 
   void addNormal(const State& state, Equations& equations) const {
@@ -162,6 +210,16 @@ class Fit {
     equations.add(threshold.slope, 1 - threshold.value, threshold.variance);
   }
 
+  Told expectedDisparity(const State& state) const {
+    const Eigen::Vector2d& pixel = known_.disparity->pixel;
+    return {state, [&](const State& s) { return planeOf(poseOf(s)).disparity(rig_, pixel.x(), pixel.y()); }};
+  }
+
+  void addDisparity(const State& state, Equations& equations) const {
+    const Told expected = expectedDisparity(state);
+    equations.add(expected.slope, known_.disparity->value - expected.value, known_.disparity->variance);
+  }
+
   const SeenOutline& seen_;
   const PoseKnowledge& known_;
   const StereoRig& rig_;
@@ -174,7 +232,7 @@ class Fit {
 Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig,
                               const PoseElements& elements) {
   const Fit fit(seen, known, rig, elements);
-  if (!fit.hasWidth() && !fit.hasLength() && !fit.hasPlane())
+  if (!fit.hasWidth() && !fit.hasLength() && !fit.hasPlane() && !fit.hasDisparity())
     return noPose("nothing tells the runway's scale");
   std::optional<State> state = fit.start();
   if (!state) return noPose("the outline is not that of a surface ahead");
@@ -194,6 +252,8 @@ Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& know
   result.size = sizeOf(*state);
   result.covariance = equations->information.inverse();
   result.misfit = equations->misfit;
+  fit.addInfluences(*state, result);
+  if (fit.hasDisparity()) result.covariance *= std::max(1.0, result.misfit / kUsualMisfit);
   const bool possible = state->allFinite() && result.covariance.allFinite() && result.pose.position.z() > 0 &&
                         result.pose.position.x() < 0;
   if (!possible) return noPose("the outline is not that of a surface ahead");

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "far/outline.h"
+#include "far/surface_disparity.h"
 #include "geometry/ground_normal.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/ground_plane.h"
@@ -21,6 +22,7 @@ struct PoseElements {
   bool width = true, length = true;  ///< of the chart
   bool normal = true;                ///< of the ground
   bool stereo = true;                ///< the ground's plane by stereo, which has a scale
+  bool disparity = true;             ///< of the runway itself
 };
 
 /// What is known besides the outline. A size that is not known is 0.
@@ -29,6 +31,8 @@ struct PoseKnowledge {
   double width_stddev = 0.3, length_stddev = 5;  ///< m
   std::optional<GroundNormal> normal;  ///< of the runway's plane, with what it may slope against the ground
   GroundPlane plane;                   ///< of the ground before the threshold
+  /// Of the surface itself, with the variance that the calibration leaves.
+  std::optional<SurfaceDisparity> disparity;
 };
 
 /// A pose with the size of the surface.
@@ -36,7 +40,10 @@ struct OutlinePose {
   RunwayPose pose;
   RunwaySize size;
   Matrix8d covariance;  ///< of position, roll, pitch, yaw, and the logarithms of width and length
-  double misfit = 0;    ///< sum of the normalised squares of what outline and knowledge differ by
+  /// By how much the height grows with the chart's width and length, m for an error as large as the size;
+  /// with the disparity, m/px.
+  double height_by_width = 0, height_by_length = 0, height_by_disparity = 0;
+  double misfit = 0;  ///< sum of the normalised squares of what outline and knowledge differ by
 };
 
 /// The pose by the runway's outline, in one least squares of the four sides with what charts, the horizon
@@ -44,8 +51,8 @@ struct OutlinePose {
 /// leaves the scale open, and says little of roll and pitch from afar. With width and length of the chart the
 /// height needs no horizon:
 ///   D = f W / w,  h = v D (D + L) / (f L)
-/// with the near side's width w and the outline's height v in the image. Without a chart the plane of
-/// stereo gives the scale at the threshold, whose corners lie on it.
+/// with the near side's width w and the outline's height v in the image. Stereo gives the scale, too: by the
+/// disparity of the runway itself, and by the plane before it, on which the threshold lies.
 ///
 /// Fails where nothing tells the scale, or the outline is none of a surface ahead.
 Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig,

@@ -63,6 +63,14 @@ PoseKnowledge SightFit::knowledge(const KnownGround& ground) const {
   return known;
 }
 
+std::optional<SurfaceDisparity> SightFit::disparityOf(const RectifiedImages& images,
+                                                      const SightedRunway& seen,
+                                                      const KnownGround& ground) const {
+  if (!ground.plane.valid()) return std::nullopt;
+  return measureDisparity({images.left, images.right, model_.left_mask, model_.right_mask, ground.rows},
+                          seen.corners, planeOf(seen.pose.pose), model_.rig);
+}
+
 bool SightFit::mayStart(const KnownGround& ground) const {
   const bool low = ground.plane.valid() && ground.plane.height() < kLowestFlight;
   return !low && (runway_.width > 0 || runway_.length > 0);

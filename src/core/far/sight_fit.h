@@ -12,10 +12,17 @@
 
 namespace uav_landing {
 
+/// Both images of a pair, mono8.
+struct RectifiedImages {
+  const cv::Mat &left, &right;
+};
+
 /// The ground as it is known without the runway; see SeenGround.
 struct KnownGround {
   std::optional<GroundNormal> normal;  ///< without what the runway slopes against it
   GroundPlane plane;                   ///< by stereo, or not valid
+  RigRotation rows;                    ///< by the vertical disparities of the pair
+  double disparity_bias = 0;           ///< 1 sigma that the calibration leaves, px
 };
 
 /// A runway's outline in one image, with the pose that belongs to it.
@@ -55,6 +62,9 @@ class SightFit {
   /// Where in the image a runway's far part may be.
   cv::Rect region(const KnownGround& ground) const;
   PoseKnowledge knowledge(const KnownGround& ground) const;
+  /// The disparity of the runway in this pair alone; nothing where stereo has no plane.
+  std::optional<SurfaceDisparity> disparityOf(const RectifiedImages& images, const SightedRunway& seen,
+                                              const KnownGround& ground) const;
   const RigModel& model() const { return model_; }
   /// True when an outline is worth looking for: a chart gives the size, and the ground is not known to be
   /// near.

@@ -97,13 +97,23 @@ void Sighting::miss(double stamp, double seconds) {
   if (near || missed_ > kPatience || unconfirmed) drop();
 }
 
+std::optional<SurfaceDisparity> Sighting::followScale(double seconds, const RectifiedImages& images,
+                                                      const SightedRunway& seen, const KnownGround& ground) {
+  const std::optional<SurfaceDisparity> found = fit_.disparityOf(images, seen, ground);
+  if (!found) return std::nullopt;
+  if (!scale_) scale_.emplace(ground.disparity_bias);
+  return scale_->follow(seconds, *found, widthInRow(seen.corners, found->pixel.y()));
+}
+
 void Sighting::drop() {
   last_.reset();
+  scale_.reset();
   confirmations_ = 0;
 }
 
-ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, const KnownGround& ground,
-                                             bool busy) {
+ApproachAngleResult::Sight Sighting::process(double stamp, const RectifiedImages& images,
+                                             const KnownGround& ground, bool busy) {
+  const cv::Mat& left = images.left;
   const bool follows = last_stamp_ && stamp > *last_stamp_ && stamp - *last_stamp_ <= kLongestStep;
   if (!follows) reset();
   const double seconds = last_stamp_ ? stamp - *last_stamp_ : 0;
@@ -132,18 +142,21 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     return sight;
   }
   keep(left, **seen);
+  const std::optional<SurfaceDisparity> disparity = followScale(seconds, images, **seen, ground);
   confirmations_ = std::min(confirmations_ + 1, kConfirmations);
   if (confirmations_ < kConfirmations) {
     sight.failure = {Reason::kNotYet, text(confirmations_, " of ", kConfirmations,
                                            " pairs that agree on the runway's outline")};
     return sight;
   }
-  return report(**seen, ground);
+  return report(**seen, ground, disparity);
 }
 
-ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const KnownGround& ground) const {
+ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const KnownGround& ground,
+                                            const std::optional<SurfaceDisparity>& disparity) const {
   ApproachAngleResult::Sight sight;
-  const PoseKnowledge known = fit_.knowledge(ground);
+  PoseKnowledge known = fit_.knowledge(ground);
+  known.disparity = disparity;
   // Stereo was left out so far, as the outline had to agree with it first.
   const Expected<OutlinePose> with_stereo = fitPose(seen.outline.seen, known, fit_.model().rig);
   const OutlinePose& found = with_stereo ? *with_stereo : seen.pose;
@@ -156,6 +169,13 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   sight.width_variance = variance(found.size.width, found.covariance(6, 6));
   sight.length = found.size.length;
   sight.length_variance = variance(found.size.length, found.covariance(7, 7));
+  sight.height_by_chart = std::max({std::abs(found.height_by_width), std::abs(found.height_by_length),
+                                    std::abs(found.height_by_width + found.height_by_length)});
+  if (with_stereo && known.disparity) {
+    sight.disparity = known.disparity->value;
+    sight.disparity_variance = known.disparity->variance;
+    sight.height_by_bias = std::abs(found.height_by_disparity) * ground.disparity_bias;
+  }
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;
   for (int i = 0; i < 3; ++i) {
@@ -167,7 +187,7 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   }
   const RunwaySize& chart = known.chart;
   const Expected<OutlinePose> by_stereo =
-      fitPose(seen.outline.seen, known, fit_.model().rig, {false, false, true, true});
+      fitPose(seen.outline.seen, known, fit_.model().rig, {false, false, true, true, true});
   if (!by_stereo) return sight;
   const double size =
       chart.width > 0 ? by_stereo->size.width / chart.width : by_stereo->size.length / chart.length;

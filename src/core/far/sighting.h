@@ -6,6 +6,7 @@
 #include "far/image_patch.h"
 #include "far/sight_fit.h"
 #include "far/sight_search.h"
+#include "far/stereo_scale.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -21,8 +22,8 @@ class Sighting {
 
   Sighting(const RigModel& rig, const ApproachAngleParameters& parameters, const RunwayParameters& runway);
 
-  /// left: rectified image. busy: other searches take the time of this pair, so a search waits.
-  ApproachAngleResult::Sight process(double stamp, const cv::Mat& left, const KnownGround& ground,
+  /// images: rectified. busy: other searches take the time of this pair, so a search waits.
+  ApproachAngleResult::Sight process(double stamp, const RectifiedImages& images, const KnownGround& ground,
                                      bool busy = false);
   void reset();
 
@@ -32,15 +33,19 @@ class Sighting {
   Expected<SightedRunway> follow(const cv::Mat& left, const KnownGround& ground) const;
   bool agrees(const OutlinePose& pose) const;
   void keep(const cv::Mat& left, const SightedRunway& seen);
+  std::optional<SurfaceDisparity> followScale(double seconds, const RectifiedImages& images,
+                                              const SightedRunway& seen, const KnownGround& ground);
   void miss(double stamp, double seconds);
   void drop();
-  ApproachAngleResult::Sight report(const SightedRunway& seen, const KnownGround& ground) const;
+  ApproachAngleResult::Sight report(const SightedRunway& seen, const KnownGround& ground,
+                                    const std::optional<SurfaceDisparity>& disparity) const;
 
   SightFit fit_;
   bool at_once_;  // a whole search in one pair
   SightSearch search_;
   std::optional<double> last_stamp_;
   std::optional<SightedRunway> last_;
+  std::optional<StereoScale> scale_;
   ImagePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s

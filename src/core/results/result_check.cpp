@@ -152,6 +152,9 @@ void keepSight(ApproachAngleResult::Sight& sight) {
   keep(sight.width, sight.width_variance);
   keep(sight.length, sight.length_variance);
   keep(sight.size_over_chart, sight.size_over_chart_variance);
+  keep(sight.disparity, sight.disparity_variance);
+  for (double* effect : {&sight.height_by_chart, &sight.height_by_bias})
+    if (!(*effect >= 0 && *effect <= kFarthest)) *effect = kUnknown;
   for (int i = 0; i < 3; ++i) keep(sight.height_without[i], sight.variance_without[i]);
   const Eigen::Vector3d& p = sight.position;
   if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest && isCovariance<3>(sight.covariance)) return;

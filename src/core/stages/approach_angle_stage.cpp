@@ -8,7 +8,7 @@
 
 #include "far/sighting.h"
 #include "image/input/image_check.h"
-#include "integrity/runway_identity.h"
+#include "integrity/tests/runway_identity.h"
 #include "motion/path/angle_by_foe.h"
 #include "motion/path/angle_normal.h"
 #include "motion/path/motion_corners.h"
@@ -90,7 +90,7 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool waits = waitsForPlane(stamp, stereo);
-    sight(stamp, left, stereo, waits, result);
+    sight(stamp, {left, right}, stereo, waits, result);
     if (waits) {
       result.failure = {Reason::kNotYet,
                         "waiting for the ground plane: lines and motion follow one pair later"};
@@ -139,7 +139,7 @@ struct ApproachAngleStage::Implementation {
 
   // Far away, the runway is seen before stereo has a plane. Its search waits while another one takes the time
   // of the pair.
-  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo, bool waits,
+  void sight(double stamp, const RectifiedImages& images, const StereoDepthResult& stereo, bool waits,
              ApproachAngleResult& result) {
     ScopedTimer timer(timings, "runway_outline");
     if (repeated(stereo)) {
@@ -153,7 +153,9 @@ struct ApproachAngleStage::Implementation {
       ground.normal = normalOf(stereo.plane);
     else if (!result.imu.failure)
       ground.normal = GroundNormal::of(result.imu.normal, result.imu.normal_covariance);
-    result.sight = sighting.process(stamp, left, ground, waits || (has_plane && tracker.needsSearch()));
+    ground.rows = stereo.vertical_rotation;
+    ground.disparity_bias = stereo.disparity_bias_stddev;
+    result.sight = sighting.process(stamp, images, ground, waits || (has_plane && tracker.needsSearch()));
   }
 
   // Maps rows to the stamp with the last motion over the last known ground.

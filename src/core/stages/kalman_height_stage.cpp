@@ -49,7 +49,7 @@ struct Parts {
         below(rig, parameters.gate),
         doubt(parameters),
         position(parameters),
-        runway(parameters, runway) {}
+        runway(parameters) {}
 };
 
 /// The ground and the height that a pair shows by itself, and the prediction for it.
@@ -142,7 +142,7 @@ struct KalmanHeightStage::Implementation {
                   result);
     result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");
-    reportPosition(in, ground, result);
+    reportPosition(in, ground, pair, result);
     timer.reset();
     if (parameters.rig_watch) reportRig(parts->ground.rigRotation(), parameters.max_rig_rotation_deg, result);
     if (parameters.integrity_monitor) result.tests = parts->failures.count(tests);
@@ -212,7 +212,16 @@ struct KalmanHeightStage::Implementation {
     return agrees && !pair.angle_refused && !ground.tilted;
   }
 
-  void reportPosition(const PairInput& in, const Ground& ground, LandingResult& result) {
+  // Where a pair is refused its stereo is in doubt, and so is what that says of the runway.
+  static ApproachAngleResult::Sight believedSight(const PairInput& in, const PairVerdict& pair) {
+    ApproachAngleResult::Sight sight = in.approach.sight;
+    if (pair.leftOut() && std::isfinite(sight.disparity))
+      sight.failure = {Reason::kInconsistent, "the pair is refused: " + pair.failure.detail};
+    return sight;
+  }
+
+  void reportPosition(const PairInput& in, const Ground& ground, const PairVerdict& pair,
+                      LandingResult& result) {
     const double bend = ground.surface.bend;
     parts->position.process(in.approach, ground.positionNormalOr(in.approach.n), in.turn,
                             {result.height_valid ? result.height - bend : kUnknown, result.height_variance,
@@ -220,9 +229,10 @@ struct KalmanHeightStage::Implementation {
                             result);
     Eigen::Vector3d direction = in.approach.vanishing_direction;
     if (result.yaw_failure) direction.setConstant(kUnknown);
+    const ApproachAngleResult::Sight sight = believedSight(in, pair);
     const TrackedPosition outline =
-        parts->runway.follow(in.T, in.approach.sight, runwayVelocity(result, in.approach.n, direction));
-    handOver(outline, in.approach.sight, result);
+        parts->runway.follow(in.T, sight, runwayVelocity(result, in.approach.n, direction));
+    handOver(outline, sight, result);
     reportHeightAboveRunway(outline, bend, parts->measurement.widthKnown(), parameters, result);
   }
 

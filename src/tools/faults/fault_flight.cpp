@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "integrity/stamp_order.h"
+#include "integrity/tests/stamp_order.h"
 #include "uav_landing/geometry/camera_pair.h"
 #include "uav_landing/pipeline.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "integrity/test_catalogue.h"
+#include "integrity/tests/test_catalogue.h"
 
 namespace uav_landing {
 namespace {

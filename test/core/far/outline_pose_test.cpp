@@ -113,6 +113,71 @@ TEST(OutlinePose, ErrorsAreAsLargeAsClaimed) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(squares[i]), 1, 0.12) << "axis " << i;
 }
 
+/// Of the point in the middle of the runway, by its depth.
+SurfaceDisparity disparityOf(const Camera& camera, double along, double stddev) {
+  const double dx = along - camera.x, dy = -camera.y;
+  const double ahead = std::cos(camera.yaw) * dx + std::sin(camera.yaw) * dy;
+  const double depth = std::cos(camera.pitch) * ahead - std::sin(camera.pitch) * camera.height;
+  return {camera.pixelOf(along, 0), kFocal / depth, stddev * stddev};
+}
+
+TEST(OutlinePose, TheDisparityOfTheRunwayGivesTheScaleWithoutAChart) {
+  const Camera camera{-600, 5, 40, 1 * kDegree, -3 * kDegree, 0.5 * kDegree};
+  PoseKnowledge known;
+  known.normal = normalOf(camera, 0.02 * kDegree);
+  known.disparity = disparityOf(camera, 300, 0.01);
+  const auto found = fitPose(seenBy(camera, 30, 1500), known, rig());
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->pose.position.x(), camera.x, 10);
+  EXPECT_NEAR(found->pose.position.z(), camera.height, 0.5);
+  EXPECT_NEAR(found->size.width, 30, 0.5);
+  // A hundredth of a pixel of 554 px m / 900 m.
+  const double of_scale = 0.01 / known.disparity->value;
+  EXPECT_GT(std::sqrt(found->covariance(6, 6)), 0.8 * of_scale);
+  EXPECT_LT(std::sqrt(found->covariance(6, 6)), 2 * of_scale);
+}
+
+TEST(OutlinePose, StereoOutweighsAChartThatIsWrong) {
+  const Camera camera{-600, 0, 40, 0, -3 * kDegree, 0};
+  PoseKnowledge known;
+  known.chart = {45, 2500};
+  known.normal = normalOf(camera, 0.3 * kDegree);
+  const SeenOutline seen = seenBy(camera, 38, 2100);
+  const auto by_chart = fitPose(seen, known, rig());
+  ASSERT_TRUE(by_chart);
+  EXPECT_GT(std::abs(by_chart->pose.position.x() / camera.x - 1), 0.12);
+  known.disparity = disparityOf(camera, 300, 0.01);
+  const auto found = fitPose(seen, known, rig());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->pose.position.x() / camera.x, 1, 0.06);
+  EXPECT_LT(std::abs(found->pose.position.x() - camera.x), 2.5 * std::sqrt(found->covariance(0, 0)));
+  EXPECT_LT(std::abs(found->pose.position.z() - camera.height), 2.5 * std::sqrt(found->covariance(2, 2)));
+}
+
+TEST(OutlinePose, SaysByHowMuchTheHeightFollowsWhatIsKnown) {
+  const Camera camera{-900, 0, 55, 0, -3 * kDegree, 0};
+  PoseKnowledge known;
+  known.chart = {45, 2500};
+  known.normal = normalOf(camera, 0.1 * kDegree);
+  known.disparity = disparityOf(camera, 400, 0.02);
+  const SeenOutline seen = seenBy(camera, 45, 2500);
+  const auto found = fitPose(seen, known, rig());
+  ASSERT_TRUE(found);
+  const auto growth = [&](const PoseKnowledge& other, double by) {
+    return (fitPose(seen, other, rig())->pose.position.z() - found->pose.position.z()) / by;
+  };
+  PoseKnowledge wider = known, longer = known, nearer = known;
+  wider.chart.width *= 1.001;
+  longer.chart.length *= 1.001;
+  nearer.disparity = disparityOf(camera, 400, 0.02);
+  nearer.disparity->value += 0.001;
+  EXPECT_NEAR(found->height_by_width, growth(wider, 0.001), 0.05 * camera.height);
+  EXPECT_NEAR(found->height_by_length, growth(longer, 0.001), 0.05 * camera.height);
+  EXPECT_NEAR(found->height_by_disparity, growth(nearer, 0.001), 0.1 * std::abs(found->height_by_disparity));
+  EXPECT_LT(found->height_by_disparity, -1);
+  EXPECT_GT(found->height_by_width + found->height_by_length, 0.1 * camera.height);
+}
+
 TEST(OutlinePose, WithoutAChartThePlaneOfStereoGivesTheScale) {
   const Camera camera{-800, 5, 50, 0, -3 * kDegree, 0};
   PoseKnowledge known;

@@ -20,20 +20,29 @@ class Approach {
 
   ApproachAngleResult::Sight next(const KnownGround& ground = {}, bool busy = false) {
     const double time = 0.2 * count_++;
-    pose = {{-2200 + 60 * time, 8, 120 - 3.1 * time},
+    pose = {{-start + 60 * time, 8, 0.0545 * start - 3.1 * time},
             2 * kDegree * std::sin(1.5 * time),
             -3 * kDegree + 0.5 * kDegree * std::sin(2 * time),
             0.5 * kDegree};
-    return sighting_.process(10 + time, picture_.render(pose, 100 + count_), ground, busy);
+    const cv::Mat left = picture_.render(pose, 100 + count_);
+    cv::Mat right;
+    if (stereo) {
+      RunwayPose beside = pose;
+      beside.position += pose.cameraFromRunway().transpose().col(0);  // a baseline of 1 m
+      right = picture_.render(beside, 900 + count_);
+    }
+    return sighting_.process(10 + time, {left, right}, ground, busy);
   }
 
+  double start = 2200;  // m before the threshold
+  bool stereo = false;  // the right camera sees the runway, too
   RunwayPose pose;
 
  private:
   static RigModel modelOf(const RunwayPicture& picture) {
     RigModel model;
     model.rig = picture.rig();
-    model.left_mask = cv::Mat(picture.size, CV_8U, cv::Scalar(255));
+    model.left_mask = model.right_mask = cv::Mat(picture.size, CV_8U, cv::Scalar(255));
     return model;
   }
 
@@ -71,6 +80,33 @@ TEST(Sighting, TellsThePositionAfterSomePairs) {
     EXPECT_NEAR(sight.yaw, approach.pose.yaw, 0.2 * kDegree);
     EXPECT_TRUE(sight.height_without.allFinite());
   }
+}
+
+TEST(Sighting, StereoSeesTheRunwayItselfWhenItIsNearEnough) {
+  RunwayPicture picture;
+  picture.size = {320, 240};
+  Approach approach(chart(45, 2500), picture);
+  approach.start = 950;
+  approach.stereo = true;
+  ApproachAngleResult::Sight sight;
+  for (int i = 0; i < 8; ++i) {
+    const double height = 0.0545 * approach.start - 0.62 * i;
+    KnownGround ground;  // level, as steeply below the camera as the path says
+    ground.plane.g = normalFromPitchRoll(-3 * kDegree, 0) / height;
+    ground.plane.covariance = std::pow(0.2 / height, 2) * Eigen::Matrix3d::Identity();
+    ground.disparity_bias = 0.02;
+    sight = approach.next(ground);
+  }
+  ASSERT_FALSE(sight.failure) << sight.failure.message();
+  // Between the depths of both ends.
+  EXPECT_LT(sight.disparity, picture.focal / -approach.pose.position.x());
+  EXPECT_GT(sight.disparity, picture.focal / (2500 - approach.pose.position.x()));
+  EXPECT_GT(sight.disparity_variance, 0.02 * 0.02) << "what the calibration leaves";
+  EXPECT_GT(sight.height_by_bias, 0);
+  EXPECT_LT(sight.height_by_chart, 0.9 * sight.position.z()) << "the chart no longer decides alone";
+  const Eigen::Vector3d error = sight.position - approach.pose.position;
+  for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(error[k]), 3 * std::sqrt(sight.covariance(k, k))) << k;
+  EXPECT_LT(std::abs(error.x()), 0.06 * -approach.pose.position.x());
 }
 
 TEST(Sighting, ASearchIsSpreadOverPairs) {

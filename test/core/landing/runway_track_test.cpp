@@ -8,22 +8,16 @@
 namespace uav_landing {
 namespace {
 
-RunwayParameters chart() {
-  RunwayParameters runway;
-  runway.width = 45;
-  runway.length = 2500;
-  return runway;
-}
-
 ApproachAngleResult::Sight sightAt(const Eigen::Vector3d& position, const Eigen::Vector3d& stddev) {
   ApproachAngleResult::Sight sight;
   sight.position = position;
   sight.covariance = stddev.cwiseAbs2().asDiagonal();
+  sight.height_by_chart = position.z();
   return sight;
 }
 
 TEST(RunwayTrack, SmoothsWhatPairsDoNotHaveInCommon) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const Eigen::Vector3d stddev(150, 10, 12);
@@ -45,7 +39,7 @@ TEST(RunwayTrack, SmoothsWhatPairsDoNotHaveInCommon) {
 
 TEST(RunwayTrack, GoesOnWithoutAPairAndForgetsAnOutlineThatWasRejected) {
   for (const Reason reason : {Reason::kNoRunway, Reason::kInconsistent, Reason::kRejected}) {
-    RunwayTrack track({}, chart());
+    RunwayTrack track({});
     for (int i = 0; i < 10; ++i)
       track.follow(i == 0 ? 0 : 0.2, sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3}));
     ApproachAngleResult::Sight missing;
@@ -60,17 +54,40 @@ TEST(RunwayTrack, GoesOnWithoutAPairAndForgetsAnOutlineThatWasRejected) {
 }
 
 TEST(RunwayTrack, TheProtectionLevelHoldsForAChartThatIsATenthOff) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   TrackedPosition found;
   for (int i = 0; i < 30; ++i)
     found = track.follow(i == 0 ? 0 : 0.2, sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3}));
-  // h = v D (D + L) / (f L), so a tenth of the width is a tenth and some more of the height.
   EXPECT_GT(found.protection_level, 0.10 * found.position.z());
   EXPECT_LT(found.protection_level, 0.15 * found.position.z());
 }
 
+TEST(RunwayTrack, TheProtectionLevelHoldsForACalibrationThatIsFarOff) {
+  RunwayTrack track({}), by_stereo({});
+  double level = 0, with_bias = 0, height = 0;
+  for (int i = 0; i < 30; ++i) {
+    ApproachAngleResult::Sight sight = sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3});
+    sight.height_by_chart = 0.1 * sight.position.z();
+    level = track.follow(i == 0 ? 0 : 0.2, sight).protection_level;
+    sight.height_by_bias = 0.03 * sight.position.z();
+    const TrackedPosition found = by_stereo.follow(i == 0 ? 0 : 0.2, sight);
+    with_bias = found.protection_level;
+    height = found.position.z();
+  }
+  EXPECT_LT(level, 0.05 * height) << "the chart hardly matters";
+  EXPECT_GT(with_bias, 5 * 0.03 * height);
+  EXPECT_LT(with_bias, 6 * 0.03 * height);
+}
+
+TEST(RunwayTrack, WithoutKnownInfluencesThereIsNoLevel) {
+  RunwayTrack track({});
+  ApproachAngleResult::Sight sight = sightAt({-1500, 0, 80}, {5, 1, 0.3});
+  sight.height_by_bias = kUnknown;
+  EXPECT_TRUE(std::isnan(track.follow(0, sight).protection_level));
+}
+
 TEST(RunwayTrack, AnElementThatContradictsRaisesTheLevel) {
-  RunwayTrack plain({}, chart()), contradicted({}, chart());
+  RunwayTrack plain({}), contradicted({});
   double level = 0;
   for (int i = 0; i < 30; ++i) {
     ApproachAngleResult::Sight sight = sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3});
@@ -86,7 +103,7 @@ TEST(RunwayTrack, AnElementThatContradictsRaisesTheLevel) {
 }
 
 TEST(RunwayTrack, AnElementThatDiffersByLessThanItsErrorLeavesTheLevelAsItIs) {
-  RunwayTrack plain({}, chart()), uncertain({}, chart());
+  RunwayTrack plain({}), uncertain({});
   for (int i = 0; i < 30; ++i) {
     ApproachAngleResult::Sight sight = sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3});
     const double level = plain.follow(i == 0 ? 0 : 0.2, sight).protection_level;
@@ -97,7 +114,7 @@ TEST(RunwayTrack, AnElementThatDiffersByLessThanItsErrorLeavesTheLevelAsItIs) {
 }
 
 TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   TrackedPosition found;
   for (int i = 0; i < 10; ++i) {
     ApproachAngleResult::Sight sight = sightAt({-800 + 12.0 * i, 0, 45}, {5, 1, 0.3});
@@ -114,7 +131,7 @@ TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
 }
 
 TEST(RunwayTrack, OnlyASizeThatIsMeasuredWellBringsThePositionBack) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   bool first = true;
   const auto knownAfterTen = [&](double size, double stddev) {
     TrackedPosition found;
@@ -133,7 +150,7 @@ TEST(RunwayTrack, OnlyASizeThatIsMeasuredWellBringsThePositionBack) {
 }
 
 TEST(RunwayTrack, CarriesOnByTheSpeedForSomeSeconds) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   RunwayVelocity velocity;
   velocity.value = {60, 0, -3};
   velocity.variance.setConstant(0.01);
@@ -153,7 +170,7 @@ TEST(RunwayTrack, CarriesOnByTheSpeedForSomeSeconds) {
 }
 
 TEST(RunwayTrack, OnePairThatIsFarOffChangesNothing) {
-  RunwayTrack track({}, chart());
+  RunwayTrack track({});
   TrackedPosition found;
   for (int i = 0; i < 20; ++i)
     found = track.follow(i == 0 ? 0 : 0.2, sightAt({-800 + 12.0 * i, 1, 45}, {5, 1, 0.3}));

@@ -270,6 +270,9 @@ ApproachAngleResult::Sight possibleSight() {
   sight.width = 45;
   sight.length = 2000;
   sight.size_over_chart = 1.01;
+  sight.disparity = 0.3;
+  sight.disparity_variance = 1e-3;
+  sight.height_by_chart = 70;
   sight.height_without = {79, 81, 82};
   sight.yaw_variance = sight.width_variance = sight.length_variance = sight.size_over_chart_variance = 1e-4;
   sight.variance_without.setConstant(9);
@@ -290,25 +293,38 @@ TEST(ResultCheck, AnOutlineLosesWhatIsNoNumberAndKeepsTheRest) {
     add("yaw ", kept.yaw, kept.yaw_variance);
     add("width ", kept.width, kept.width_variance);
     add("length ", kept.length, kept.length_variance);
+    add("disparity ", kept.disparity, kept.disparity_variance);
+    if (std::isfinite(kept.height_by_chart)) names += "chart ";
+    if (std::isfinite(kept.height_by_bias)) names += "bias ";
     add("size ", kept.size_over_chart, kept.size_over_chart_variance);
     for (int i = 0; i < 3; ++i) add("without ", kept.height_without[i], kept.variance_without[i]);
     add("position", kept.position.sum(), kept.covariance.sum());
     return names;
   };
   using Sight = ApproachAngleResult::Sight;
-  EXPECT_EQ(known([](Sight&) {}), "yaw width length size without without without position");
+  EXPECT_EQ(known([](Sight&) {}),
+            "yaw width length disparity chart bias size without without without position");
   EXPECT_EQ(known([](Sight& s) { s.yaw_variance = -1; }),
-            "width length size without without without position");
-  EXPECT_EQ(known([](Sight& s) { s.width = 1e6; }), "yaw length size without without without position");
+            "width length disparity chart bias size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.width = 1e6; }),
+            "yaw length disparity chart bias size without without without position");
   EXPECT_EQ(known([](Sight& s) { s.length_variance = kUnknown; }),
-            "yaw width size without without without position");
+            "yaw width disparity chart bias size without without without position");
   EXPECT_EQ(known([](Sight& s) { s.size_over_chart = kUnknown; }),
-            "yaw width length without without without position");
+            "yaw width length disparity chart bias without without without position");
   EXPECT_EQ(known([](Sight& s) { s.variance_without[1] = -4; }),
-            "yaw width length size without without position");
-  EXPECT_EQ(known([](Sight& s) { s.position.x() = -1e6; }), "yaw width length size without without without ");
+            "yaw width length disparity chart bias size without without position");
+  EXPECT_EQ(known([](Sight& s) { s.disparity_variance = -1; }),
+            "yaw width length chart bias size without without without position");
+  EXPECT_EQ(known([](Sight& s) {
+              s.height_by_chart = -1;
+              s.height_by_bias = kUnknown;
+            }),
+            "yaw width length disparity size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.position.x() = -1e6; }),
+            "yaw width length disparity chart bias size without without without ");
   EXPECT_EQ(known([](Sight& s) { s.covariance(2, 2) = -1; }),
-            "yaw width length size without without without ");
+            "yaw width length disparity chart bias size without without without ");
 }
 
 /// A runway that is seen from 2 heights to the side, 4 heights wide, 10 heights ahead.

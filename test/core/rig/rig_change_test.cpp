@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "integrity/pair_tests.h"
+#include "integrity/tests/pair_tests.h"
 
 namespace uav_landing {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "integrity/stamp_order.h"
+#include "integrity/tests/stamp_order.h"
 #include "support/rigs.h"
 #include "uav_landing/parameters/rectify_parameters.h"
 #include "uav_landing/stages/kalman_height_stage.h"

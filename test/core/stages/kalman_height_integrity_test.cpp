@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrity/test_catalogue.h"
+#include "integrity/tests/test_catalogue.h"
 #include "rig/rig_rotation.h"
 #include "support/ground_matches.h"
 #include "support/rigs.h"

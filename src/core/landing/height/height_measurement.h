@@ -1,7 +1,7 @@
 #pragma once
 
 #include "height/width_height.h"
-#include "integrity/stamp_scatter.h"
+#include "integrity/tests/stamp_scatter.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/measured_height.h"

@@ -5,9 +5,9 @@
 #include "estimation/innovation_scatter.h"
 #include "height/height_filter.h"
 #include "height/vertical_speed.h"
-#include "integrity/ground_memory.h"
-#include "integrity/pair_tests.h"
-#include "integrity/solution_separation.h"
+#include "integrity/memory/ground_memory.h"
+#include "integrity/tests/pair_tests.h"
+#include "integrity/tests/solution_separation.h"
 #include "landing/height/measured_height.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 

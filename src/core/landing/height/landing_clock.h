@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "integrity/clock_watch.h"
+#include "integrity/tests/clock_watch.h"
 #include "landing/height/height_track.h"
 #include "landing/height/pair_input.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "height/common_variance.h"
-#include "integrity/solution_separation.h"
+#include "integrity/tests/solution_separation.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/results/stage_results.h"
 

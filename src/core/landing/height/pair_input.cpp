@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "integrity/test_catalogue.h"
+#include "integrity/tests/test_catalogue.h"
 #include "results/result_check.h"
 #include "rig/plane_rate.h"
 

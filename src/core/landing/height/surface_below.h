@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "integrity/ground_memory.h"
+#include "integrity/memory/ground_memory.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/measured_height.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "height/camera_twist.h"
-#include "integrity/ground_memory.h"
+#include "integrity/memory/ground_memory.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/measured_height.h"

@@ -24,6 +24,7 @@ constexpr double kSpeedError = 0.005;  // share of the speed, as the axes are sl
 constexpr double kGate = 5;            // standard deviations
 constexpr double kPatience = 12;       // s without the outline after which the position is forgotten
 constexpr double kChartError = 0.10;   // share of width and length
+constexpr double kBiasError = 5;       // standard deviations of what a calibration leaves
 constexpr Sigmas kContradiction(3);    // between the height and the one without an element
 constexpr Sigmas kOtherSize(4);
 constexpr double kSameSize = 0.04;  // largest relative difference between sizes that count as the same
@@ -32,9 +33,8 @@ constexpr int kAgreeing = 5;        // pairs with another size that contradict t
 
 }  // namespace
 
-RunwayTrack::RunwayTrack(const KalmanHeightParameters& parameters, const RunwayParameters& runway)
+RunwayTrack::RunwayTrack(const KalmanHeightParameters& parameters)
     : parameters_(parameters),
-      runway_(runway),
       axes_{Axis(kForwardSpeed), Axis(kOtherSpeed), Axis(kOtherSpeed)},
       without_{Axis(kOtherSpeed), Axis(kOtherSpeed), Axis(kOtherSpeed)} {}
 
@@ -114,6 +114,7 @@ void RunwayTrack::measure(const ApproachAngleResult::Sight& sight) {
   unseen_ = 0;
   const double distance = std::abs(sight.position.x()), height = std::abs(sight.position.z());
   const double systematic[] = {kSystematicX * distance, kSystematicY * distance, kSystematicZ * height};
+  influences_ = {sight.height_by_chart / height, sight.height_by_bias / height};
   for (int i = 0; i < 3; ++i) {
     axes_[i].update(sight.position[i], sight.covariance(i, i), systematic[i]);
     if (std::isfinite(sight.height_without[i]) && sight.variance_without[i] > 0)
@@ -137,12 +138,9 @@ void RunwayTrack::compareSize(double T, const ApproachAngleResult::Sight& sight)
 double RunwayTrack::protectionLevel() const {
   const ProtectionFactors factors(parameters_);
   const double height = axes_[2].value(), stddev = std::sqrt(axes_[2].variance());
-  const double distance = std::max(0.0, -axes_[0].value());
-  // h = v D (D + L) / (f L), with D in proportion to the width. If only the width is wrong, h grows faster
-  // than in proportion. Half of that excess is compensated by the length and the outline's taper.
-  const double share = runway_.length > 0 ? distance / (distance + runway_.length) : 0;
-  const double by_chart = kChartError * height * (1 + 0.5 * share);
-  double level = std::max(factors.healthy * stddev, by_chart + factors.faulty * stddev);
+  if (!std::isfinite(influences_.chart + influences_.bias)) return kUnknown;
+  const double by_fault = height * std::max(kChartError * influences_.chart, kBiasError * influences_.bias);
+  double level = std::max(factors.healthy * stddev, by_fault + factors.faulty * stddev);
   for (const Axis& axis : without_) {
     if (!axis.known()) continue;
     if (kContradiction.admits(axis.value() - height, axis.variance())) continue;

@@ -5,7 +5,6 @@
 
 #include "height/height_filter.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
-#include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -39,12 +38,13 @@ RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3
 /// The protection level of the height is the largest of
 ///   k sigma;
 ///   (effect of a chart that is wrong by 10 %) + k_f sigma;
+///   (effect of a calibration that is off by five times what it is off by usually) + k_f sigma;
 ///   |z - z_i| + k_f sigma_i, where z_i is the height without element i, if it contradicts z.
 /// From afar nothing shows that a chart is wrong. When the runway is near, stereo measures it. If its size is
 /// not the chart's, all lengths are wrong, so no position is reported.
 class RunwayTrack {
  public:
-  RunwayTrack(const KalmanHeightParameters& parameters, const RunwayParameters& runway);
+  explicit RunwayTrack(const KalmanHeightParameters& parameters);
 
   /// T: s since the previous pair; 0 when that pair says nothing about this one.
   TrackedPosition follow(double T, const ApproachAngleResult::Sight& sight,
@@ -70,15 +70,20 @@ class RunwayTrack {
     double common_ = 0;  // part of the last measurement's variance that the next ones share
     int rejected_ = 0;   // measurements in a row
   };
+  /// By how much the height is off, as a share of it: by a wrong chart, as a share of the chart's error, and
+  /// by one standard deviation of the disparity's bias.
+  struct Influences {
+    double chart = kUnknown, bias = kUnknown;
+  };
   void measure(const ApproachAngleResult::Sight& sight);
   void compareSize(double T, const ApproachAngleResult::Sight& sight);
   double protectionLevel() const;
   void forget();
 
   KalmanHeightParameters parameters_;
-  RunwayParameters runway_;
   std::array<Axis, 3> axes_;     // x, y, z
   std::array<Axis, 3> without_;  // z without an element
+  Influences influences_;        // on the last measurement
   double unseen_ = 0;            // s since the last measurement
   // Pairs with a size other than the chart's. Pairs with the chart's size count it down to 0.
   int other_size_ = 0;

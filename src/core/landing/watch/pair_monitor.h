@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "integrity/pair_tests.h"
-#include "integrity/speed_memory.h"
+#include "integrity/memory/speed_memory.h"
+#include "integrity/tests/pair_tests.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/measured_height.h"
@@ -37,7 +37,7 @@ struct PairVerdict {
 };
 
 /// Tests the sources of a pair against each other and against the previous pairs. What a failed test does is
-/// stated in the catalogue (integrity/test_catalogue.h): mostly, the pair gives no height.
+/// stated in the catalogue (integrity/tests/test_catalogue.h): mostly, the pair gives no height.
 class PairMonitor {
  public:
   PairMonitor(const StereoRig& rig, const KalmanHeightParameters& parameters);

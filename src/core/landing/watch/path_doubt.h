@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "geometry/ground_normal.h"
-#include "integrity/normal_doubt.h"
-#include "integrity/pair_tests.h"
-#include "integrity/vanishing_memory.h"
+#include "integrity/memory/vanishing_memory.h"
+#include "integrity/tests/normal_doubt.h"
+#include "integrity/tests/pair_tests.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/pair_input.h"
 

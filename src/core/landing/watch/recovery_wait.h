@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrity/recovery.h"
+#include "integrity/tests/recovery.h"
 #include "landing/height/height_track.h"
 #include "landing/watch/pair_monitor.h"
 

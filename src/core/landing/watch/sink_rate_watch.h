@@ -1,7 +1,7 @@
 #pragma once
 
-#include "integrity/height_memory.h"
-#include "integrity/pair_tests.h"
+#include "integrity/memory/height_memory.h"
+#include "integrity/tests/pair_tests.h"
 #include "landing/height/ground_estimate.h"
 #include "landing/height/height_track.h"
 #include "landing/height/measured_height.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "integrity/pair_tests.h"
-#include "integrity/velocity_memory.h"
+#include "integrity/memory/velocity_memory.h"
+#include "integrity/tests/pair_tests.h"
 #include "landing/height/pair_input.h"
 
 namespace uav_landing {

@@ -5,11 +5,11 @@
 
 #include "geometry/plane_vector.h"
 #include "rig/rig_rotation.h"
+#include "stereo/bands/band_evidence.h"
+#include "stereo/bands/texture_bands.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/aligned_rows.h"
-#include "stereo/photometric/band_evidence.h"
 #include "stereo/photometric/block_disparity.h"
-#include "stereo/photometric/texture_bands.h"
 
 namespace uav_landing {
 
