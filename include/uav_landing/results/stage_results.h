@@ -190,8 +190,8 @@ struct ApproachAngleResult {
     /// for width, length, or both.
     double height_by_chart = kUnknown;
     /// Disparity of the runway itself, px, px^2. Not known where stereo does not show the runway.
-    /// height_by_bias: by how much the height changes when the calibration is off by one standard deviation,
-    /// m; 0 without a disparity.
+    /// height_by_bias: by how much the height changes with one standard deviation of the bias that all
+    /// disparities have in common, m; 0 without a disparity.
     double disparity = kUnknown, disparity_variance = kUnknown, height_by_bias = 0;
     /// Size of the surface by stereo, over the chart's; unknown without stereo.
     double size_over_chart = kUnknown, size_over_chart_variance = kUnknown;

@@ -108,7 +108,7 @@ class Solver {
         prior_(prior),
         p_(prior.value),
         residuals_(pixels.size()),
-        slopes_(pixels.size(), kOutlineParameters) {
+        slopes_(static_cast<Eigen::Index>(pixels.size()), Eigen::Index{kOutlineParameters}) {
     p_.head<8>() = inward;
   }
 

@@ -20,9 +20,9 @@ struct RectifiedImages {
 /// The ground as it is known without the runway; see SeenGround.
 struct KnownGround {
   std::optional<GroundNormal> normal;  ///< without what the runway slopes against it
-  GroundPlane plane;                   ///< by stereo, or not valid
+  GroundPlane plane;                   ///< by stereo, without the bias, or not valid
   RigRotation rows;                    ///< by the vertical disparities of the pair
-  double disparity_bias = 0;           ///< 1 sigma that the calibration leaves, px
+  double bias = 0, bias_stddev = 0;    ///< of all disparities, px
 };
 
 /// A runway's outline in one image, with the pose that belongs to it.

@@ -101,13 +101,12 @@ std::optional<SurfaceDisparity> Sighting::followScale(double seconds, const Rect
                                                       const SightedRunway& seen, const KnownGround& ground) {
   const std::optional<SurfaceDisparity> found = fit_.disparityOf(images, seen, ground);
   if (!found) return std::nullopt;
-  if (!scale_) scale_.emplace(ground.disparity_bias);
-  return scale_->follow(seconds, *found, widthInRow(seen.corners, found->pixel.y()));
+  return scale_.follow(seconds, *found, widthInRow(seen.corners, found->pixel.y()), ground.bias_stddev);
 }
 
 void Sighting::drop() {
   last_.reset();
-  scale_.reset();
+  scale_ = {};
   confirmations_ = 0;
 }
 
@@ -174,7 +173,7 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   if (with_stereo && known.disparity) {
     sight.disparity = known.disparity->value;
     sight.disparity_variance = known.disparity->variance;
-    sight.height_by_bias = std::abs(found.height_by_disparity) * ground.disparity_bias;
+    sight.height_by_bias = std::abs(found.height_by_disparity) * ground.bias_stddev;
   }
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;

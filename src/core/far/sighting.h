@@ -45,7 +45,7 @@ class Sighting {
   SightSearch search_;
   std::optional<double> last_stamp_;
   std::optional<SightedRunway> last_;
-  std::optional<StereoScale> scale_;
+  StereoScale scale_;
   ImagePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s

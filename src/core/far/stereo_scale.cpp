@@ -12,7 +12,8 @@ constexpr Sigmas kGate(4);       // farther off, another edge is followed
 
 }  // namespace
 
-SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, double width) {
+SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, double width,
+                                     double bias_stddev) {
   const Ratio now{seen.value / width, seen.variance / (width * width), 1 / width};
   if (mean_) mean_->variance *= std::exp(T / kMemory);
   if (!mean_ || !kGate.admits(now.value - mean_->value, now.variance + mean_->variance)) {
@@ -23,7 +24,7 @@ SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, dou
     mean_->by_bias += gain * (now.by_bias - mean_->by_bias);
     mean_->variance *= 1 - gain;
   }
-  const double bias = mean_->by_bias * bias_stddev_;
+  const double bias = mean_->by_bias * bias_stddev;
   return {seen.pixel, mean_->value * width, (mean_->variance + bias * bias) * width * width};
 }
 

@@ -10,15 +10,13 @@ namespace uav_landing {
 ///
 /// The disparity of a surface over its width in the image is the baseline over its width in metres. That
 /// stays the same while the aircraft comes nearer, so it is averaged over the last pairs, where each counts
-/// by its noise. What the calibration leaves does not average out.
+/// by its noise. A bias does not average out.
 class StereoScale {
  public:
-  /// bias_stddev: of disparities, that the calibration leaves, px.
-  explicit StereoScale(double bias_stddev = 0) : bias_stddev_(bias_stddev) {}
-
-  /// Takes the disparity of a pair in, and returns that of this pair by all of them, with the calibration's
-  /// error. T: s since the pair before. width: of the surface in the image, where the disparity holds, px.
-  SurfaceDisparity follow(double T, const SurfaceDisparity& seen, double width);
+  /// Takes the disparity of a pair in, and returns that of this pair by all of them, with the bias. T: s
+  /// since the pair before. width: of the surface in the image, where the disparity holds, px. bias_stddev:
+  /// of all disparities alike, px.
+  SurfaceDisparity follow(double T, const SurfaceDisparity& seen, double width, double bias_stddev = 0);
 
  private:
   /// Disparity over width.
@@ -26,7 +24,6 @@ class StereoScale {
     double value, variance;  // by the noise of the images
     double by_bias;          // growth with the disparities' bias, 1/px
   };
-  double bias_stddev_;
   std::optional<Ratio> mean_;
 };
 

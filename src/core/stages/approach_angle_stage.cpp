@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "far/disparity_bias.h"
 #include "far/sighting.h"
 #include "image/input/image_check.h"
 #include "integrity/tests/runway_identity.h"
@@ -48,6 +49,7 @@ struct ApproachAngleStage::Implementation {
   MotionTracker tracker;
   RunwayTracker runway;
   Sighting sighting;
+  DisparityBias bias;  // by the pairs before
   RunwayIdentity identity;
   SeenDirections last;
   double stamp_before = kUnknown;
@@ -67,6 +69,7 @@ struct ApproachAngleStage::Implementation {
         tracker(rig, p),
         runway(rig, p, known),
         sighting(rig, p, known),
+        bias(rig.rig),
         readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -122,6 +125,7 @@ struct ApproachAngleStage::Implementation {
     straightenPlan(result);
     last_normal = result.n;
     followMotion(left, has_plane ? &stereo : nullptr, repeated(stereo), normal, result);
+    if (has_plane && !repeated(stereo)) bias.update(stereo.plane, result.window);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
     } else {
@@ -146,15 +150,17 @@ struct ApproachAngleStage::Implementation {
       result.sight.failure = {Reason::kInconsistent, "the left image is that of the pair before"};
       return;
     }
+    bias.predict(stamp, stereo.disparity_bias_stddev);
     KnownGround ground;
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    if (has_plane) ground.plane = stereo.plane;
+    if (has_plane) ground.plane = bias.corrected(stereo.plane);
     if (has_plane)
-      ground.normal = normalOf(stereo.plane);
+      ground.normal = normalOf(ground.plane);
     else if (!result.imu.failure)
       ground.normal = GroundNormal::of(result.imu.normal, result.imu.normal_covariance);
     ground.rows = stereo.vertical_rotation;
-    ground.disparity_bias = stereo.disparity_bias_stddev;
+    ground.bias = bias.value();
+    ground.bias_stddev = std::sqrt(bias.variance());
     result.sight = sighting.process(stamp, images, ground, waits || (has_plane && tracker.needsSearch()));
   }
 
@@ -338,6 +344,7 @@ void ApproachAngleStage::reset() {
   implementation_->tracker.reset();
   implementation_->runway.reset();
   implementation_->sighting.reset();
+  implementation_->bias = DisparityBias(implementation_->model.rig);
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
   implementation_->first_search = true;

@@ -94,14 +94,14 @@ TEST(Sighting, StereoSeesTheRunwayItselfWhenItIsNearEnough) {
     KnownGround ground;  // level, as steeply below the camera as the path says
     ground.plane.g = normalFromPitchRoll(-3 * kDegree, 0) / height;
     ground.plane.covariance = std::pow(0.2 / height, 2) * Eigen::Matrix3d::Identity();
-    ground.disparity_bias = 0.02;
+    ground.bias_stddev = 0.02;
     sight = approach.next(ground);
   }
   ASSERT_FALSE(sight.failure) << sight.failure.message();
   // Between the depths of both ends.
   EXPECT_LT(sight.disparity, picture.focal / -approach.pose.position.x());
   EXPECT_GT(sight.disparity, picture.focal / (2500 - approach.pose.position.x()));
-  EXPECT_GT(sight.disparity_variance, 0.02 * 0.02) << "what the calibration leaves";
+  EXPECT_GT(sight.disparity_variance, 0.02 * 0.02) << "the bias";
   EXPECT_GT(sight.height_by_bias, 0);
   EXPECT_LT(sight.height_by_chart, 0.9 * sight.position.z()) << "the chart no longer decides alone";
   const Eigen::Vector3d error = sight.position - approach.pose.position;

@@ -40,14 +40,14 @@ TEST(StereoScale, IsAveragedOverPairsWhileTheRunwayComesNearer) {
   EXPECT_LT(std::sqrt(squares / claimed), 1.1);
 }
 
-TEST(StereoScale, WhatTheCalibrationLeavesDoesNotAverageOut) {
-  StereoScale exact, calibrated(0.02);
+TEST(StereoScale, ABiasDoesNotAverageOut) {
+  StereoScale exact, biased;
   SurfaceDisparity a, b;
   for (int i = 0; i < 100; ++i) {
     const Seen seen = seenAt(i);
     const SurfaceDisparity measured{{320, 240}, seen.disparity + 0.02, 1e-4};
     a = exact.follow(kInterval, measured, seen.width);
-    b = calibrated.follow(kInterval, measured, seen.width);
+    b = biased.follow(kInterval, measured, seen.width, 0.02);
   }
   EXPECT_EQ(a.value, b.value);
   const double error = b.value - seenAt(99).disparity;

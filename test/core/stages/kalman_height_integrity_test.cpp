@@ -57,6 +57,32 @@ TEST(KalmanHeightIntegrity, AHealthyFlightPassesAllTestsAndIsProtected) {
   EXPECT_DOUBLE_EQ(result.height_alert_limit, 0.05 * result.height);
 }
 
+/// x after pairs that are refused, of which the outline says that the runway is 20 m nearer.
+double xAfterRefusedPairs(bool outline_by_stereo) {
+  KalmanHeightStage stage(test::usualRig(), {});
+  LandingResult result;
+  for (int i = 0; i < 45; ++i) {
+    const double stamp = 1 + 0.05 * i, height = i < 40 ? 10 : 13;
+    ApproachAngleResult approach = levelFlight(stamp, 10);
+    ApproachAngleResult::Sight& sight = approach.sight;
+    sight.position = {-400 + i + (i < 40 ? 0 : 20), 0, 10};
+    sight.covariance = Eigen::Vector3d(9, 0.25, 0.04).asDiagonal();
+    sight.height_by_chart = 1;
+    if (outline_by_stereo) {
+      sight.disparity = 1;
+      sight.disparity_variance = 1e-4;
+    }
+    result = stage.process(stereoAt(stamp, height), approach);
+    EXPECT_EQ(result.rejected, i >= 40) << i << ' ' << result.failure.message();
+  }
+  return result.x;
+}
+
+TEST(KalmanHeightIntegrity, ARefusedPairDoesNotTellWhereTheRunwayIsByStereo) {
+  EXPECT_NEAR(xAfterRefusedPairs(true), -356, 1);
+  EXPECT_GT(xAfterRefusedPairs(false), -352) << "an outline by the chart alone does not rest on stereo";
+}
+
 TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTime) {
   KalmanHeightStage stage(test::usualRig(), {});
   double stamp = 1;

@@ -14,10 +14,8 @@ namespace uav_landing {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kFew = 2;  // values in a range that are looked at one by one
-constexpr int kSlow =
-    3;  // consecutive limits that leave most of a range; then the smallest value is looked at
-constexpr int kTries = 10;  // limits after the samples
+constexpr int kFew = 2;   // values in a range that are looked at one by one
+constexpr int kSlow = 3;  // limits in a row that leave most of a range; then the smallest value is looked at
 
 [[gnu::always_inline]] inline int sumOf(const IntLanes& n) {
   return ((n[0] + n[4]) + (n[2] + n[6])) + ((n[1] + n[5]) + (n[3] + n[7]));

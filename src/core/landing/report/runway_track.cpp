@@ -24,7 +24,7 @@ constexpr double kSpeedError = 0.005;  // share of the speed, as the axes are sl
 constexpr double kGate = 5;            // standard deviations
 constexpr double kPatience = 12;       // s without the outline after which the position is forgotten
 constexpr double kChartError = 0.10;   // share of width and length
-constexpr double kBiasError = 5;       // standard deviations of what a calibration leaves
+constexpr double kBiasError = 5;       // standard deviations of the disparities' bias
 constexpr Sigmas kContradiction(3);    // between the height and the one without an element
 constexpr Sigmas kOtherSize(4);
 constexpr double kSameSize = 0.04;  // largest relative difference between sizes that count as the same

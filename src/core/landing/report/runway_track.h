@@ -38,7 +38,7 @@ RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3
 /// The protection level of the height is the largest of
 ///   k sigma;
 ///   (effect of a chart that is wrong by 10 %) + k_f sigma;
-///   (effect of a calibration that is off by five times what it is off by usually) + k_f sigma;
+///   (effect of disparities that are off by five times what is claimed of their bias) + k_f sigma;
 ///   |z - z_i| + k_f sigma_i, where z_i is the height without element i, if it contradicts z.
 /// From afar nothing shows that a chart is wrong. When the runway is near, stereo measures it. If its size is
 /// not the chart's, all lengths are wrong, so no position is reported.

@@ -131,7 +131,8 @@ Symmetry SymmetrySearch::around(const MirroredPair& centre, Memory& memory) cons
   near.clear();
   apart.resize(pairs_.size());
   columns_.markApart(&centre - pairs_.data(), kGate.count(), spread_, apart.data());
-  const auto next = [&](size_t from) {
+  // A lambda cannot hold a name of a structured binding itself (C++17).
+  const auto next = [&apart = apart](size_t from) {
     const void* close = std::memchr(apart.data() + from, 0, apart.size() - from);
     return close ? static_cast<size_t>(static_cast<const uchar*>(close) - apart.data()) : apart.size();
   };

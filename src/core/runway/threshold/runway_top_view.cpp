@@ -10,7 +10,6 @@ namespace {
 constexpr double kFarthest = 60;     // heights
 constexpr double kNearest = 0.5;     // heights
 constexpr double kFootprint = 0.02;  // largest length of a station on the ground, as a share of the width
-constexpr int kColumns = TopView::kColumns;
 
 }  // namespace
 

@@ -46,7 +46,7 @@ double rectify(const SimulatedRigParameters& rig, CameraCalibration& left, Camer
   const cv::Size size(left.width, left.height);
   if (hasFisheye(left) && hasFisheye(right))
     cv::fisheye::stereoRectify(left_k, left.D, right_k, right.D, size, rotation, translation, left_r, right_r,
-                               left_p, right_p, q, cv::fisheye::CALIB_ZERO_DISPARITY);
+                               left_p, right_p, q, cv::CALIB_ZERO_DISPARITY);
   else
     cv::stereoRectify(left_k, left.D, right_k, right.D, size, rotation, translation, left_r, right_r, left_p,
                       right_p, q, cv::CALIB_ZERO_DISPARITY, 0.0);

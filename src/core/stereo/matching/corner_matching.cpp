@@ -150,10 +150,8 @@ RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& 
     const bool across = chosen.has(i);
     const RowRefinement match = matcher.match(corner.x, corner.y, across);
     if (!match.converged) continue;
-    matches.samples.push_back({double(corner.x),
-                               double(corner.y),
-                               match.stddev,
-                               {corner.x - match.position - level.rig.principalOffset()}});
+    matches.samples.push_back({double(corner.x), double(corner.y), match.stddev,
+                               corner.x - match.position - level.rig.principalOffset()});
     matches.across.push_back(across && parameters.warp_window ? std::optional(match.across) : std::nullopt);
   }
   return matches;

@@ -9,8 +9,6 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
-constexpr int kPixels = PhotometricBlocks::kPixels, kMargin = PhotometricBlocks::kMargin;
 // Variance of a derivative by Sobel's kernel over that of the noise.
 constexpr double kSlopeNoise = 0.1875;
 // Variance of the right image's noise after interpolation over that before. Half-way between two pixels, 0.64

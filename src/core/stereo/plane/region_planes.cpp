@@ -65,7 +65,7 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   std::vector<DisparitySample> samples;
   samples.reserve(points.size());
   for (const StereoDepthResult::Point& point : points)
-    samples.push_back({point.u, point.v, point.disparity_stddev, {point.disparity}});
+    samples.push_back({point.u, point.v, point.disparity_stddev, point.disparity});
   PlaneColumns memory;
   const Expected<PlaneFit> all = refinePlane(rig, {samples}, plane, limits, memory);
   if (!all) return planes;
