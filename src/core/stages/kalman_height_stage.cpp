@@ -142,7 +142,7 @@ struct KalmanHeightStage::Implementation {
                   result);
     result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");
-    reportPosition(in, ground, pair, result);
+    reportPosition(in, ground, pair.leftOut() || post.rejection, result);
     timer.reset();
     if (parameters.rig_watch) reportRig(parts->ground.rigRotation(), parameters.max_rig_rotation_deg, result);
     if (parameters.integrity_monitor) result.tests = parts->failures.count(tests);
@@ -213,15 +213,14 @@ struct KalmanHeightStage::Implementation {
   }
 
   // Where a pair is refused its stereo is in doubt, and so is what that says of the runway.
-  static ApproachAngleResult::Sight believedSight(const PairInput& in, const PairVerdict& pair) {
+  static ApproachAngleResult::Sight believedSight(const PairInput& in, bool refused) {
     ApproachAngleResult::Sight sight = in.approach.sight;
-    if (pair.leftOut() && std::isfinite(sight.disparity))
-      sight.failure = {Reason::kInconsistent, "the pair is refused: " + pair.failure.detail};
+    if (refused && std::isfinite(sight.disparity))
+      sight.failure = {Reason::kInconsistent, "the pair is refused"};
     return sight;
   }
 
-  void reportPosition(const PairInput& in, const Ground& ground, const PairVerdict& pair,
-                      LandingResult& result) {
+  void reportPosition(const PairInput& in, const Ground& ground, bool refused, LandingResult& result) {
     const double bend = ground.surface.bend;
     parts->position.process(in.approach, ground.positionNormalOr(in.approach.n), in.turn,
                             {result.height_valid ? result.height - bend : kUnknown, result.height_variance,
@@ -229,7 +228,7 @@ struct KalmanHeightStage::Implementation {
                             result);
     Eigen::Vector3d direction = in.approach.vanishing_direction;
     if (result.yaw_failure) direction.setConstant(kUnknown);
-    const ApproachAngleResult::Sight sight = believedSight(in, pair);
+    const ApproachAngleResult::Sight sight = believedSight(in, refused);
     const TrackedPosition outline =
         parts->runway.follow(in.T, sight, runwayVelocity(result, in.approach.n, direction));
     handOver(outline, sight, result);

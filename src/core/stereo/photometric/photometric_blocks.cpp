@@ -8,8 +8,6 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
-constexpr int kMargin = PhotometricBlocks::kMargin;
 // Ground with a smaller disparity (pixels) is too near the horizon to tell the height.
 constexpr double kLeastDisparity = 0.3;
 // A block with a smaller sum of squared grey levels shows nothing.
