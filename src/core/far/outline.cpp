@@ -2,14 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 
 namespace uav_landing {
 namespace {
 
-constexpr double kNearest = 1;                                  // m in front of the camera
-constexpr double kShortestRunway = 400, kLongestRunway = 5000;  // m
+constexpr double kNearest = 1;  // m in front of the camera
 
 /// Where two lines meet, each given by a point and its inward normal.
 Eigen::Vector2d meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& normal_a, const Eigen::Vector2d& b,
@@ -71,18 +69,10 @@ double widthInRow(const Corners& corners, double row) {
   return column(corners[3], corners[2]) - column(corners[0], corners[1]);
 }
 
-double lengthOf(const Corners& corners, const OutlineLook& look) {
-  if (look.size.length > 0) return look.size.length;
-  const double near_width = (corners[3] - corners[0]).norm(), far_width = (corners[2] - corners[1]).norm();
-  const double by_taper = look.focal_length * look.size.width * (1 / far_width - 1 / near_width);
-  return std::clamp(by_taper, kShortestRunway, kLongestRunway);
-}
-
-double rowsOfMetres(double metres, const Corners& corners, const OutlineLook& look) {
-  const double taper = (corners[2] - corners[1]).norm() / (corners[3] - corners[0]).norm();
-  const double share = metres / lengthOf(corners, look);
-  const double height = 0.5 * ((corners[1] - corners[0]).norm() + (corners[2] - corners[3]).norm());
-  return share / (taper + (1 - taper) * share) * height;
+Eigen::AlignedBox2d boxOf(const Corners& corners) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : corners) box.extend(corner);
+  return box;
 }
 
 Vector8d movedInward(const Corners& reference, const Corners& corners) {

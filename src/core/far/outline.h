@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 
@@ -58,13 +59,11 @@ struct OutlineSide {
   Eigen::Vector2d movedTo(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
 };
 
-/// Length of the surface by what is known of it, else by how it gets narrower, m.
-double lengthOf(const Corners& corners, const OutlineLook& look);
-/// How many rows of the image so many metres of the surface take up at its near end, px. look: with a width.
-double rowsOfMetres(double metres, const Corners& corners, const OutlineLook& look);
-
 /// The image of the surface's corners; none unless all are in front of the camera.
 std::optional<Corners> cornersOf(const RunwayPose& pose, const RunwaySize& size, const StereoRig& rig);
+
+/// The upright rectangle around all corners.
+Eigen::AlignedBox2d boxOf(const Corners& corners);
 
 /// Width between the long sides of an outline in a row of the image, px.
 double widthInRow(const Corners& corners, double row);

@@ -43,13 +43,9 @@ struct Pixel {
 
 std::vector<Pixel> pixelsAround(const cv::Mat& image, const cv::Mat& mask, const Corners& corners,
                                 const OutlineModel& model) {
-  Eigen::Vector2d low = corners[0], high = corners[0];
+  const Eigen::Vector2d low = boxOf(corners).min(), high = boxOf(corners).max();
   double around = 0;
-  for (int i = 0; i < kSides; ++i) {
-    low = low.cwiseMin(corners[i]);
-    high = high.cwiseMax(corners[i]);
-    around += (corners[(i + 1) % kSides] - corners[i]).norm();
-  }
+  for (int i = 0; i < kSides; ++i) around += (corners[(i + 1) % kSides] - corners[i]).norm();
   const int stride = static_cast<int>(std::ceil(around * kBand / kMostPixels));
   const int left = std::max(0, static_cast<int>(low.x() - kAround)),
             top = std::max(0, static_cast<int>(low.y() - kAround));

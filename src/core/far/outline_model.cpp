@@ -10,6 +10,7 @@ namespace {
 // Markings, m: stripe inside of the edge, bars behind the threshold.
 constexpr double kStripePlace = 1.0, kBarsBegin = 6, kBarsEnd = 36;
 constexpr double kMarksAcross = 15;  // m, 1 sigma by which bars and a line across at an end move the side
+constexpr double kShortestRunway = 400, kLongestRunway = 5000;  // m
 
 /// A blurred edge and its slope, by linear interpolation: both of a distance in standard deviations.
 class BlurTable {
@@ -68,10 +69,13 @@ OutlineModel::OutlineModel(const Corners& reference, const OutlineLook& look)
   near_width_ = sides_[kNearSide].length;
   far_width_ = sides_[kFarSide].length;
   const double taper = far_width_ / near_width_;
-  const double length = lengthOf(reference, look);
+  const double by_taper = look.focal_length * width_ / near_width_ * (1 - taper) / taper;
+  const double length =
+      look.size.length > 0 ? look.size.length : std::clamp(by_taper, kShortestRunway, kLongestRunway);
+  const auto place = [&](double metres) { return metres / length / (taper + (1 - taper) * metres / length); };
   const double height = 0.5 * (sides_[kLeftSide].length + sides_[kRightSide].length);
-  bars_[0] = rowsOfMetres(kBarsBegin, reference, look);
-  bars_[1] = rowsOfMetres(kBarsEnd, reference, look);
+  bars_[0] = place(kBarsBegin) * height;
+  bars_[1] = place(kBarsEnd) * height;
   // At the far end all is shorter by the square of the taper.
   far_bars_[0] = kBarsBegin / length * taper * height;
   far_bars_[1] = kBarsEnd / length * taper * height;

@@ -14,8 +14,8 @@ constexpr double kSettled = 1e-4;        // of a standard deviation
 constexpr double kLevel = 10 * kDegree;  // 1 sigma of roll and pitch of a camera that flies an approach
 constexpr double kUsualWidth = 35, kUsualLength = 1800;  // m
 constexpr double kAnySize = 0.8;  // 1 sigma of the logarithm of a size that is not known
-// What stereo, chart and outline have too many. Where they differ by more, one of them is wrong: then their
-// errors are larger than they say (Birge 1932).
+// Chart, horizon and stereo are six equations too many, so a misfit of some 6 is usual. Where it is larger,
+// one of them is wrong, and errors are larger than they say (Birge 1932). A little less is on the safe side.
 constexpr double kUsualMisfit = 5;
 constexpr double kDoubtedChart = 3;   // standard deviations from which on a size counts less and less
 constexpr double kHills = 0.01;       // of the distance: 1 sigma of the threshold off the plane before it
@@ -85,7 +85,7 @@ class Fit {
   bool hasLength() const { return elements_.length && known_.chart.length > 0; }
   bool hasPlane() const { return elements_.stereo && known_.plane.valid(); }
   bool hasNormal() const { return elements_.normal && known_.normal; }
-  bool hasDisparity() const { return elements_.disparity && known_.disparity; }
+  bool hasDisparity() const { return known_.disparity.has_value(); }
 
   std::optional<State> start() const {
     const Corners c = movedBy(seen_.reference, seen_.inward);
@@ -148,7 +148,7 @@ class Fit {
     if (hasWidth()) result.height_by_width = bySize(6, widthPrior(state));
     if (hasLength()) result.height_by_length = bySize(7, lengthPrior(state));
     if (!hasDisparity()) return;
-    const State gain = result.covariance * expectedDisparity(state).slope / known_.disparity->variance;
+    const State gain = result.covariance * expectedDisparity(state).slope / known_.disparity->totalVariance();
     result.height_by_disparity = gain[2];
   }
 
@@ -217,7 +217,8 @@ class Fit {
 
   void addDisparity(const State& state, Equations& equations) const {
     const Told expected = expectedDisparity(state);
-    equations.add(expected.slope, known_.disparity->value - expected.value, known_.disparity->variance);
+    equations.add(expected.slope, known_.disparity->value - expected.value,
+                  known_.disparity->totalVariance());
   }
 
   const SeenOutline& seen_;

@@ -22,7 +22,6 @@ struct PoseElements {
   bool width = true, length = true;  ///< of the chart
   bool normal = true;                ///< of the ground
   bool stereo = true;                ///< the ground's plane by stereo, which has a scale
-  bool disparity = true;             ///< of the runway itself
 };
 
 /// What is known besides the outline. A size that is not known is 0.
@@ -31,7 +30,7 @@ struct PoseKnowledge {
   double width_stddev = 0.3, length_stddev = 5;  ///< m
   std::optional<GroundNormal> normal;  ///< of the runway's plane, with what it may slope against the ground
   GroundPlane plane;                   ///< of the ground before the threshold
-  /// Of the surface itself, with the variance that the calibration leaves.
+  /// Of the surface itself.
   std::optional<SurfaceDisparity> disparity;
 };
 

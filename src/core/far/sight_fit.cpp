@@ -67,11 +67,7 @@ std::optional<SurfaceDisparity> SightFit::disparityOf(const RectifiedImages& ima
                                                       const SightedRunway& seen,
                                                       const KnownGround& ground) const {
   if (!ground.plane.valid()) return std::nullopt;
-  std::optional<SurfaceDisparity> found =
-      measureDisparity({images.left, images.right, model_.left_mask, model_.right_mask, ground.rows},
-                       seen.corners, planeOf(seen.pose.pose), model_.rig);
-  if (found) found->value -= ground.bias;
-  return found;
+  return measureDisparity(images, model_, ground.right, seen.corners, planeOf(seen.pose.pose));
 }
 
 bool SightFit::mayStart(const KnownGround& ground) const {

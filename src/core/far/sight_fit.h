@@ -12,17 +12,11 @@
 
 namespace uav_landing {
 
-/// Both images of a pair, mono8.
-struct RectifiedImages {
-  const cv::Mat &left, &right;
-};
-
 /// The ground as it is known without the runway; see SeenGround.
 struct KnownGround {
   std::optional<GroundNormal> normal;  ///< without what the runway slopes against it
-  GroundPlane plane;                   ///< by stereo, without the bias, or not valid
-  RigRotation rows;                    ///< by the vertical disparities of the pair
-  double bias = 0, bias_stddev = 0;    ///< of all disparities, px
+  GroundPlane plane;                   ///< by stereo, without the rig's rotation, or not valid
+  RightCamera right;
 };
 
 /// A runway's outline in one image, with the pose that belongs to it.

@@ -79,11 +79,7 @@ bool Sighting::agrees(const OutlinePose& pose) const {
 void Sighting::keep(const cv::Mat& left, const SightedRunway& seen) {
   last_ = seen;
   missed_ = 0;
-  Eigen::Vector2d low = seen.corners[0], high = low;
-  for (const Eigen::Vector2d& corner : seen.corners) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
+  const Eigen::Vector2d low = boxOf(seen.corners).min(), high = boxOf(seen.corners).max();
   patch_.take(left, {cv::Point(static_cast<int>(low.x()) - kMargin, static_cast<int>(low.y()) - kMargin),
                      cv::Point(static_cast<int>(high.x()) + kMargin, static_cast<int>(high.y()) + kMargin)});
 }
@@ -101,7 +97,7 @@ std::optional<SurfaceDisparity> Sighting::followScale(double seconds, const Rect
                                                       const SightedRunway& seen, const KnownGround& ground) {
   const std::optional<SurfaceDisparity> found = fit_.disparityOf(images, seen, ground);
   if (!found) return std::nullopt;
-  return scale_.follow(seconds, *found, widthInRow(seen.corners, found->pixel.y()), ground.bias_stddev);
+  return scale_.follow(seconds, *found, widthInRow(seen.corners, found->pixel.y()));
 }
 
 void Sighting::drop() {
@@ -172,8 +168,8 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
                                     std::abs(found.height_by_width + found.height_by_length)});
   if (with_stereo && known.disparity) {
     sight.disparity = known.disparity->value;
-    sight.disparity_variance = known.disparity->variance;
-    sight.height_by_bias = std::abs(found.height_by_disparity) * ground.bias_stddev;
+    sight.disparity_variance = known.disparity->totalVariance();
+    sight.height_by_bias = std::abs(found.height_by_disparity) * known.disparity->bias_stddev;
   }
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;
@@ -186,7 +182,7 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   }
   const RunwaySize& chart = known.chart;
   const Expected<OutlinePose> by_stereo =
-      fitPose(seen.outline.seen, known, fit_.model().rig, {false, false, true, true, true});
+      fitPose(seen.outline.seen, known, fit_.model().rig, {false, false, true, true});
   if (!by_stereo) return sight;
   const double size =
       chart.width > 0 ? by_stereo->size.width / chart.width : by_stereo->size.length / chart.length;

@@ -12,8 +12,7 @@ constexpr Sigmas kGate(4);       // farther off, another edge is followed
 
 }  // namespace
 
-SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, double width,
-                                     double bias_stddev) {
+SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, double width) {
   const Ratio now{seen.value / width, seen.variance / (width * width), 1 / width};
   if (mean_) mean_->variance *= std::exp(T / kMemory);
   if (!mean_ || !kGate.admits(now.value - mean_->value, now.variance + mean_->variance)) {
@@ -24,8 +23,8 @@ SurfaceDisparity StereoScale::follow(double T, const SurfaceDisparity& seen, dou
     mean_->by_bias += gain * (now.by_bias - mean_->by_bias);
     mean_->variance *= 1 - gain;
   }
-  const double bias = mean_->by_bias * bias_stddev;
-  return {seen.pixel, mean_->value * width, (mean_->variance + bias * bias) * width * width};
+  return {seen.pixel, mean_->value * width, mean_->variance * width * width,
+          mean_->by_bias * width * seen.bias_stddev};
 }
 
 }  // namespace uav_landing

@@ -13,10 +13,9 @@ namespace uav_landing {
 /// by its noise. A bias does not average out.
 class StereoScale {
  public:
-  /// Takes the disparity of a pair in, and returns that of this pair by all of them, with the bias. T: s
-  /// since the pair before. width: of the surface in the image, where the disparity holds, px. bias_stddev:
-  /// of all disparities alike, px.
-  SurfaceDisparity follow(double T, const SurfaceDisparity& seen, double width, double bias_stddev = 0);
+  /// Takes the disparity of a pair in, and returns that of this pair by all of them. T: s since the pair
+  /// before. width: of the surface in the image, where the disparity holds, px.
+  SurfaceDisparity follow(double T, const SurfaceDisparity& seen, double width);
 
  private:
   /// Disparity over width.

@@ -31,13 +31,9 @@ struct Pixel {
   double grey, slope, about;
 };
 
-std::vector<Pixel> pixelsOf(const SightedPair& pair, const Corners& corners, const GroundPlane& about,
-                            const StereoRig& rig) {
-  Eigen::Vector2d low = corners[0], high = corners[0];
-  for (const Eigen::Vector2d& corner : corners) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
+std::vector<Pixel> pixelsOf(const cv::Mat& image, const RigModel& model, const Corners& corners,
+                            const GroundPlane& about) {
+  const Eigen::Vector2d low = boxOf(corners).min(), high = boxOf(corners).max();
   const std::array<OutlineSide, kSides> sides{OutlineSide(corners, 0), OutlineSide(corners, 1),
                                               OutlineSide(corners, 2), OutlineSide(corners, 3)};
   const auto isNear = [&](const Eigen::Vector2d& place) {
@@ -46,17 +42,17 @@ std::vector<Pixel> pixelsOf(const SightedPair& pair, const Corners& corners, con
     });
   };
   const int left = std::max(1, static_cast<int>(low.x() - kAround)),
-            right = std::min(pair.left.cols - 2, static_cast<int>(high.x() + kAround) + 1),
+            right = std::min(image.cols - 2, static_cast<int>(high.x() + kAround) + 1),
             top = std::max(0, static_cast<int>(low.y() - kAround)),
-            bottom = std::min(pair.left.rows - 1, static_cast<int>(high.y() + kAround) + 1);
+            bottom = std::min(image.rows - 1, static_cast<int>(high.y() + kAround) + 1);
   const double area = std::max(0, right - left + 1) * static_cast<double>(std::max(0, bottom - top + 1));
   const int stride = std::max(1, static_cast<int>(std::ceil(area / kMostPixels)));  // of rows
   std::vector<Pixel> pixels;
   for (int v = top; v <= bottom; v += stride) {
-    const uchar *grey = pair.left.ptr<uchar>(v), *usable = pair.left_mask.ptr<uchar>(v);
+    const uchar *grey = image.ptr<uchar>(v), *usable = model.left_mask.ptr<uchar>(v);
     for (int u = left; u <= right; ++u) {
       if (usable[u - 1] == 0 || usable[u + 1] == 0 || !isNear({u, v})) continue;
-      const double disparity = about.disparity(rig, u, v);
+      const double disparity = about.disparity(model.rig, u, v);
       if (disparity > 0)
         pixels.push_back({u, v, double(grey[u]), 0.5 * (grey[u + 1] - grey[u - 1]), disparity});
     }
@@ -64,32 +60,59 @@ std::vector<Pixel> pixelsOf(const SightedPair& pair, const Corners& corners, con
   return pixels;
 }
 
+/// Where the disparity of the whole is that of a pixel: the middle of what tells it.
+std::optional<Eigen::Vector2d> middleOf(const std::vector<Pixel>& pixels) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  double sum = 0;
+  for (const Pixel& pixel : pixels) {
+    const double weight = pixel.slope * pixel.slope * pixel.about;
+    middle += weight * Eigen::Vector2d(pixel.u, pixel.v);
+    sum += weight;
+  }
+  if (!(sum > 0)) return std::nullopt;
+  return middle / sum;
+}
+
 /// The right image, between its pixels.
 class RightImage {
  public:
-  RightImage(const SightedPair& pair, const StereoRig& rig) : pair_(pair), rig_(rig) {}
+  RightImage(const cv::Mat& image, const RigModel& model, const RightCamera& camera)
+      : image_(image), model_(model), camera_(camera) {}
+
+  /// 1 sigma of the disparity by what is not known of the camera's rotation, px.
+  double biasStddev(const Eigen::Vector2d& left, double disparity) const {
+    if (!camera_.turned.known()) return 0;
+    const Eigen::RowVector3d by = byRotation(left, disparity);
+    return std::sqrt(by.dot(camera_.turned.covariance * by.transpose()));
+  }
 
   /// What it shows of a pixel of the left image with this disparity; NaN where it shows nothing.
   double at(const Pixel& pixel, double disparity) const {
-    const double column = pixel.u - disparity - rig_.principalOffset();
-    double row = pixel.v;
-    if (pair_.rows.known()) row += verticalDisparityByRotation(rig_, column, pixel.v).dot(pair_.rows.w);
-    const int u = static_cast<int>(std::floor(column)), v = static_cast<int>(std::floor(row));
-    if (u < 1 || u + 2 >= pair_.right.cols || v < 0 || v + 1 >= pair_.right.rows) return std::nan("");
-    if (pair_.right_mask.at<uchar>(v, u) == 0 || pair_.right_mask.at<uchar>(v + 1, u + 1) == 0)
-      return std::nan("");
-    const double down = row - v;
-    return (1 - down) * inRow(v, u, column - u) + down * inRow(v + 1, u, column - u);
+    const Eigen::Vector2d left(pixel.u, pixel.v);
+    if (camera_.turned.known()) disparity += byRotation(left, disparity).dot(camera_.turned.w);
+    const Eigen::Vector2d place = placeInRightImage(model_.rig, camera_.rows, left, disparity);
+    const int u = static_cast<int>(std::floor(place.x())), v = static_cast<int>(std::floor(place.y()));
+    if (u < 1 || u + 2 >= image_.cols || v < 0 || v + 1 >= image_.rows) return std::nan("");
+    const cv::Mat& usable = model_.right_mask;
+    if (usable.at<uchar>(v, u) == 0 || usable.at<uchar>(v + 1, u + 1) == 0) return std::nan("");
+    const double right = place.x() - u, down = place.y() - v;
+    return (1 - down) * inRow(v, u, right) + down * inRow(v + 1, u, right);
   }
 
  private:
-  double inRow(int v, int u, double beyond) const {
-    const uchar* row = pair_.right.ptr<uchar>(v) + u;
-    return parabolicBetween(row[-1], row[0], row[1], row[2], static_cast<float>(beyond));
+  /// What the disparity of a place is moved by, per rad of the camera's rotation, px.
+  Eigen::RowVector3d byRotation(const Eigen::Vector2d& left, double disparity) const {
+    return disparityByRotation(model_.rig, left.x() - disparity - model_.rig.principalOffset(), left.y());
   }
 
-  const SightedPair& pair_;
-  const StereoRig& rig_;
+  double inRow(int v, int u, double right) const {
+    const uchar* row = image_.ptr<uchar>(v) + u;
+    return parabolicBetween(row[-1], row[0], row[1], row[2], static_cast<float>(right));
+  }
+
+  const cv::Mat& image_;
+  const RigModel& model_;
+  const RightCamera& camera_;
 };
 
 /// Solution of: left = gain right + offset - growth about slope. growth: of the disparities, as a share.
@@ -157,34 +180,28 @@ class Aligner {
 
 }  // namespace
 
-std::optional<SurfaceDisparity> measureDisparity(const SightedPair& pair, const Corners& corners,
-                                                 const GroundPlane& about, const StereoRig& rig) {
-  const std::vector<Pixel> pixels = pixelsOf(pair, corners, about, rig);
+std::optional<SurfaceDisparity> measureDisparity(const RectifiedImages& images, const RigModel& model,
+                                                 const RightCamera& right, const Corners& corners,
+                                                 const GroundPlane& about) {
+  const std::vector<Pixel> pixels = pixelsOf(images.left, model, corners, about);
   if (pixels.size() < kFewest) return std::nullopt;
-  // Where the disparity of the whole is that of a pixel: the middle of what tells it.
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  double sum = 0;
-  for (const Pixel& pixel : pixels) {
-    const double weight = pixel.slope * pixel.slope * pixel.about;
-    middle += weight * Eigen::Vector2d(pixel.u, pixel.v);
-    sum += weight;
-  }
-  if (!(sum > 0)) return std::nullopt;
-  middle /= sum;
-  const double start = about.disparity(rig, middle.x(), middle.y());
-  const RightImage image(pair, rig);
-  std::vector<double> right(pixels.size());
-  double scale = 1;  // of the disparities, against `about`
+  const std::optional<Eigen::Vector2d> middle = middleOf(pixels);
+  if (!middle) return std::nullopt;
+  const double start = about.disparity(model.rig, middle->x(), middle->y());
+  const RightImage image(images.right, model, right);
+  std::vector<double> greys(pixels.size());  // of the right image
+  double scale = 1;                          // of the disparities, against `about`
   for (int i = 0; i < kIterations; ++i) {
-    std::transform(pixels.begin(), pixels.end(), right.begin(),
+    std::transform(pixels.begin(), pixels.end(), greys.begin(),
                    [&](const Pixel& pixel) { return image.at(pixel, scale * pixel.about); });
-    const std::optional<Alignment> found = Aligner(pixels, right).solve();
+    const std::optional<Alignment> found = Aligner(pixels, greys).solve();
     if (!found || found->gain < kLeastGain || found->gain > kMostGain) return std::nullopt;
     scale += found->growth;
     if (!(scale > 0) || std::abs(scale - 1) * start > kFarthest) return std::nullopt;
     if (std::abs(found->growth) * start > kSettled) continue;
     if (found->alike < kLeastAlike) return std::nullopt;
-    return SurfaceDisparity{middle, scale * start, found->growth_variance * start * start};
+    return SurfaceDisparity{*middle, scale * start, found->growth_variance * start * start,
+                            image.biasStddev(*middle, scale * start)};
   }
   return std::nullopt;
 }

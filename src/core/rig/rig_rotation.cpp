@@ -39,6 +39,13 @@ Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disp
   return rig.fy / rig.fx * disparity * Eigen::RowVector2d(-1, y);
 }
 
+Eigen::Vector2d placeInRightImage(const StereoRig& rig, const RigRotation& rows, const Eigen::Vector2d& left,
+                                  double disparity) {
+  const double column = left.x() - disparity - rig.principalOffset();
+  if (!rows.known()) return {column, left.y()};
+  return {column, left.y() + verticalDisparityByRotation(rig, column, left.y()).dot(rows.w)};
+}
+
 Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev) {
   const Eigen::Vector3d pixels(row_bias_stddev, 0, row_bias_stddev / kLensReach);
   return (pixels / rig.fy).array().square();

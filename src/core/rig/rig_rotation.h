@@ -28,6 +28,11 @@ Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double colu
 /// point, pixels.
 Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disparity, double v);
 
+/// Where the right image shows a pixel of the left one that has this disparity. rows: by vertical
+/// disparities; not known: the rows are level.
+Eigen::Vector2d placeInRightImage(const StereoRig& rig, const RigRotation& rows, const Eigen::Vector2d& left,
+                                  double disparity);
+
 /// Distance from the middle of the image at which vertical disparities show a roll, in focal lengths.
 constexpr double kLensReach = 0.3;
 /// Lenses leave vertical disparities even after a good calibration: 1 sigma is row_bias_stddev, pixels. They

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "far/disparity_bias.h"
+#include "far/sighted_ground.h"
 #include "far/sighting.h"
 #include "image/input/image_check.h"
 #include "integrity/tests/runway_identity.h"
@@ -49,7 +49,7 @@ struct ApproachAngleStage::Implementation {
   MotionTracker tracker;
   RunwayTracker runway;
   Sighting sighting;
-  DisparityBias bias;  // by the pairs before
+  SightedGround sighted_ground;
   RunwayIdentity identity;
   SeenDirections last;
   double stamp_before = kUnknown;
@@ -69,7 +69,7 @@ struct ApproachAngleStage::Implementation {
         tracker(rig, p),
         runway(rig, p, known),
         sighting(rig, p, known),
-        bias(rig.rig),
+        sighted_ground(rig.rig),
         readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -125,7 +125,7 @@ struct ApproachAngleStage::Implementation {
     straightenPlan(result);
     last_normal = result.n;
     followMotion(left, has_plane ? &stereo : nullptr, repeated(stereo), normal, result);
-    if (has_plane && !repeated(stereo)) bias.update(stereo.plane, result.window);
+    if (!repeated(stereo)) sighted_ground.learn(result.window);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
     } else {
@@ -150,18 +150,9 @@ struct ApproachAngleStage::Implementation {
       result.sight.failure = {Reason::kInconsistent, "the left image is that of the pair before"};
       return;
     }
-    bias.predict(stamp, stereo.disparity_bias_stddev);
-    KnownGround ground;
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    if (has_plane) ground.plane = bias.corrected(stereo.plane);
-    if (has_plane)
-      ground.normal = normalOf(ground.plane);
-    else if (!result.imu.failure)
-      ground.normal = GroundNormal::of(result.imu.normal, result.imu.normal_covariance);
-    ground.rows = stereo.vertical_rotation;
-    ground.bias = bias.value();
-    ground.bias_stddev = std::sqrt(bias.variance());
-    result.sight = sighting.process(stamp, images, ground, waits || (has_plane && tracker.needsSearch()));
+    result.sight = sighting.process(stamp, images, sighted_ground.of(stereo, has_plane, result.imu),
+                                    waits || (has_plane && tracker.needsSearch()));
   }
 
   // Maps rows to the stamp with the last motion over the last known ground.
@@ -344,7 +335,7 @@ void ApproachAngleStage::reset() {
   implementation_->tracker.reset();
   implementation_->runway.reset();
   implementation_->sighting.reset();
-  implementation_->bias = DisparityBias(implementation_->model.rig);
+  implementation_->sighted_ground.reset();
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
   implementation_->first_search = true;

@@ -30,12 +30,15 @@ class Approach {
       RunwayPose beside = pose;
       beside.position += pose.cameraFromRunway().transpose().col(0);  // a baseline of 1 m
       right = picture_.render(beside, 900 + count_);
+      const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, right_shift, 0, 1, 0);
+      cv::warpAffine(right, right, shift, right.size(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
     }
     return sighting_.process(10 + time, {left, right}, ground, busy);
   }
 
   double start = 2200;  // m before the threshold
   bool stereo = false;  // the right camera sees the runway, too
+  int right_shift = 0;  // px by which its image is moved to the right
   RunwayPose pose;
 
  private:
@@ -82,31 +85,61 @@ TEST(Sighting, TellsThePositionAfterSomePairs) {
   }
 }
 
-TEST(Sighting, StereoSeesTheRunwayItselfWhenItIsNearEnough) {
-  RunwayPicture picture;
-  picture.size = {320, 240};
-  Approach approach(chart(45, 2500), picture);
-  approach.start = 950;
-  approach.stereo = true;
+/// Some pairs from 950 m on, on level ground that stereo sees.
+class NearApproach {
+ public:
+  /// right_shift: px by which the right camera's yaw moves its image; the ground knows of it.
+  explicit NearApproach(int right_shift = 0) : approach_(chart(45, 2500), small()) {
+    approach_.start = 950;
+    approach_.stereo = true;
+    approach_.right_shift = right_shift;
+    for (int i = 0; i < 8; ++i)
+      sight = approach_.next(groundAt(0.0545 * approach_.start - 0.62 * i, right_shift));
+  }
+  const RunwayPose& pose() const { return approach_.pose; }
+
   ApproachAngleResult::Sight sight;
-  for (int i = 0; i < 8; ++i) {
-    const double height = 0.0545 * approach.start - 0.62 * i;
-    KnownGround ground;  // level, as steeply below the camera as the path says
+
+  static RunwayPicture small() {
+    RunwayPicture picture;
+    picture.size = {320, 240};
+    return picture;
+  }
+
+ private:
+  static KnownGround groundAt(double height, int right_shift) {
+    KnownGround ground;
     ground.plane.g = normalFromPitchRoll(-3 * kDegree, 0) / height;
     ground.plane.covariance = std::pow(0.2 / height, 2) * Eigen::Matrix3d::Identity();
-    ground.bias_stddev = 0.02;
-    sight = approach.next(ground);
+    ground.right.turned.w = {0, -right_shift / small().focal, 0};
+    ground.right.turned.covariance = std::pow(0.02 / small().focal, 2) * Eigen::Matrix3d::Identity();
+    return ground;
   }
+
+  Approach approach_;
+};
+
+TEST(Sighting, StereoSeesTheRunwayItselfWhenItIsNearEnough) {
+  const NearApproach near;
+  const ApproachAngleResult::Sight& sight = near.sight;
+  const double focal = NearApproach::small().focal;
   ASSERT_FALSE(sight.failure) << sight.failure.message();
   // Between the depths of both ends.
-  EXPECT_LT(sight.disparity, picture.focal / -approach.pose.position.x());
-  EXPECT_GT(sight.disparity, picture.focal / (2500 - approach.pose.position.x()));
+  EXPECT_LT(sight.disparity, focal / -near.pose().position.x());
+  EXPECT_GT(sight.disparity, focal / (2500 - near.pose().position.x()));
   EXPECT_GT(sight.disparity_variance, 0.02 * 0.02) << "the bias";
   EXPECT_GT(sight.height_by_bias, 0);
   EXPECT_LT(sight.height_by_chart, 0.9 * sight.position.z()) << "the chart no longer decides alone";
-  const Eigen::Vector3d error = sight.position - approach.pose.position;
+  const Eigen::Vector3d error = sight.position - near.pose().position;
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(error[k]), 3 * std::sqrt(sight.covariance(k, k))) << k;
-  EXPECT_LT(std::abs(error.x()), 0.06 * -approach.pose.position.x());
+  EXPECT_LT(std::abs(error.x()), 0.06 * -near.pose().position.x());
+}
+
+TEST(Sighting, ARightCameraThatIsKnownToHaveTurnedSeesTheSameDisparity) {
+  const NearApproach straight, turned(1);
+  ASSERT_FALSE(straight.sight.failure || turned.sight.failure);
+  EXPECT_NEAR(turned.sight.disparity, straight.sight.disparity, 0.02);
+  EXPECT_NEAR(turned.sight.position.x() / straight.sight.position.x(), 1, 0.02);
 }
 
 TEST(Sighting, ASearchIsSpreadOverPairs) {

@@ -41,18 +41,17 @@ TEST(StereoScale, IsAveragedOverPairsWhileTheRunwayComesNearer) {
 }
 
 TEST(StereoScale, ABiasDoesNotAverageOut) {
-  StereoScale exact, biased;
-  SurfaceDisparity a, b;
+  StereoScale scale;
+  SurfaceDisparity found;
   for (int i = 0; i < 100; ++i) {
     const Seen seen = seenAt(i);
-    const SurfaceDisparity measured{{320, 240}, seen.disparity + 0.02, 1e-4};
-    a = exact.follow(kInterval, measured, seen.width);
-    b = biased.follow(kInterval, measured, seen.width, 0.02);
+    found = scale.follow(kInterval, {{320, 240}, seen.disparity + 0.02, 1e-4, 0.02}, seen.width);
   }
-  EXPECT_EQ(a.value, b.value);
-  const double error = b.value - seenAt(99).disparity;
-  EXPECT_NEAR(std::sqrt(b.variance - a.variance), error, 0.05 * error) << "it weighs more from afar";
-  EXPECT_GT(error, 0.02);
+  const double error = found.value - seenAt(99).disparity;
+  EXPECT_NEAR(found.bias_stddev, error, 0.05 * error);
+  EXPECT_GT(error, 0.02) << "it weighs more from afar";
+  EXPECT_LT(found.variance, 0.2 * 1e-4);
+  EXPECT_DOUBLE_EQ(found.totalVariance(), found.variance + found.bias_stddev * found.bias_stddev);
 }
 
 TEST(StereoScale, BeginsAnewWithAnotherEdge) {

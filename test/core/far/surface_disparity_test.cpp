@@ -22,16 +22,17 @@ class Pair {
     RunwayPose right = pose;
     right.position += pose.cameraFromRunway().transpose().col(0);  // a baseline of 1 m
     right_ = picture_.render(right);
-    mask_ = cv::Mat(picture_.size, CV_8U, cv::Scalar(255));
+    model_.rig = picture_.rig();
+    model_.left_mask = model_.right_mask = cv::Mat(picture_.size, CV_8U, cv::Scalar(255));
   }
 
   /// scale: of the plane that is known roughly.
   std::optional<SurfaceDisparity> measure(const cv::Mat& left, const cv::Mat& right, double scale = 1,
-                                          const RigRotation& rows = {}) const {
+                                          const RightCamera& camera = {}) const {
     GroundPlane about = planeOf(pose);
     about.g *= scale;
     const Corners corners = *cornersOf(pose, {picture_.width, picture_.length}, picture_.rig());
-    return measureDisparity({left, right, mask_, mask_, rows}, corners, about, picture_.rig());
+    return measureDisparity({left, right}, model_, camera, corners, about);
   }
 
   /// By the way from the camera to where the pixel's ray meets the ground.
@@ -55,7 +56,8 @@ class Pair {
 
  private:
   RunwayPicture picture_;
-  cv::Mat left_, right_, mask_;
+  RigModel model_;
+  cv::Mat left_, right_;
 };
 
 TEST(SurfaceDisparity, OfARunwayIsFoundFromFarOff) {
@@ -100,7 +102,7 @@ TEST(SurfaceDisparity, IsLookedForInTheRowsWhereTheRightCameraHasThem) {
   RigRotation rows;
   rows.w = {2 / 554.0, 0, 0};
   rows.covariance.setZero();
-  const auto found = pair.measure(pair.left(), lower, 1, rows);
+  const auto found = pair.measure(pair.left(), lower, 1, {rows, {}});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->value, pair.disparityAt(found->pixel), 0.02);
   const auto level = pair.measure(pair.left(), lower);

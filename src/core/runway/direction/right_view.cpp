@@ -6,10 +6,8 @@ namespace uav_landing {
 
 std::vector<RoughSegment> linesInRightView(const StereoRig& rig, const SeenGround& ground,
                                            const std::vector<LineSegment>& lines) {
-  const auto seen = [&](const Eigen::Vector2d& left) -> Eigen::Vector2d {
-    const double column = left.x() - ground.plane.disparity(rig, left.x(), left.y()) - rig.principalOffset();
-    if (!ground.rows.known()) return {column, left.y()};
-    return {column, left.y() + verticalDisparityByRotation(rig, column, left.y()).dot(ground.rows.w)};
+  const auto seen = [&](const Eigen::Vector2d& left) {
+    return placeInRightImage(rig, ground.rows, left, ground.plane.disparity(rig, left.x(), left.y()));
   };
   std::vector<RoughSegment> moved;
   moved.reserve(lines.size());
