@@ -43,8 +43,9 @@ class SimulateCampaignTest(unittest.TestCase):
                           "kalman_height: {height_model_error: 0}\n")
         options = ("--first", 4, "--count", 1, "--heights", 3, "--noise", 1)
         names = ("stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg", "lens_rows_px", "lens_tilt_deg")
-        self.assertNotIn(0, [float(self.fly(*options)[0][name]) for name in names])
-        self.assertEqual([float(self.fly(*options, "--config", config)[0][name]) for name in names], [0] * 6)
+        usual, exact_rig = self.fly(*options)[0], self.fly(*options, "--config", config)[0]
+        self.assertNotIn(0, [float(usual[name]) for name in names])
+        self.assertEqual([float(exact_rig[name]) for name in names], [0] * 6)
 
     def test_an_inertial_sensor_shows_in_the_estimates_and_nowhere_else(self):
         config = self.folder / "perfect.yaml"
@@ -56,10 +57,10 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertLess(abs(float(with_imu["pitch_deg"]) - float(with_imu["pitch_true_deg"])), 0.04)
 
     def test_ground_bends_under_the_same_height(self):
-        options = ("--first", 1, "--count", 6, "--heights", 10, "--noise", 2)
+        options = ("--first", 1, "--count", 3, "--heights", 10, "--noise", 2)
         flat, bent = self.fly(*options), self.fly(*options, "--bend")
         heights = [(float(a["height_true_m"]), float(b["height_true_m"])) for a, b in zip(flat, bent)]
-        self.assertTrue(any(abs(a - b) > 1e-9 for a, b in heights), "none of six bends")
+        self.assertTrue(any(abs(a - b) > 1e-9 for a, b in heights), "none of three bends")
         for a, b in heights:
             self.assertAlmostEqual(a, b, delta=0.05)
         refused = run([PROGRAM, "approaches", "--csv", self.folder / "rows.csv", "--bend"])
@@ -67,7 +68,7 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertIn("--bend: for snippets only", refused.stderr)
 
     def test_scenery_shows_in_the_estimates_and_changes_no_truth(self):
-        options = ("--first", 1, "--count", 3, "--heights", 10, "--noise", 2)
+        options = ("--first", 1, "--count", 2, "--heights", 10, "--noise", 2)
         bare, with_scenery = self.fly(*options), self.fly(*options, "--scenery")
         for a, b in zip(bare, with_scenery):
             self.assertEqual([value for name, value in a.items() if "_true_" in name],
