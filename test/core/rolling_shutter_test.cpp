@@ -63,30 +63,41 @@ struct UntoldRatios {
   int count = 0;
 };
 
-UntoldRatios untoldRatios(double readout) {
+test::Pose steadyPose(double t) { return test::movingPose(t); }
+
+/// The same path in gusts: turns by up to 9 degrees a second while rows are read.
+test::Pose gustyPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.pitch += 1.0 * test::kDegree * std::sin(2 * M_PI * 1.5 * t);
+  pose.roll += 1.5 * test::kDegree * std::sin(2 * M_PI * 0.8 * t);
+  return pose;
+}
+
+UntoldRatios untoldRatios(double readout, bool asked = true, test::Pose (*poseAt)(double) = steadyPose) {
   constexpr int kPairs = 32, kFirst = 6;
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const test::GroundRenderer ground(12);
   Parameters parameters;
-  parameters.rig.estimate_readout_time = true;
+  parameters.rig.estimate_readout_time = asked;
   Pipeline pipeline =
       Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
   UntoldRatios ratios;
   for (int i = 0; i < kPairs; ++i) {
     const double stamp = i * kPeriod;
-    const Pipeline::Output& output = pipeline.process(stamp, test::rollingImage(ground, rig, stamp, readout),
-                                                      test::rollingImage(ground, rig, stamp, readout, true));
+    const Pipeline::Output& output =
+        pipeline.process(stamp, test::rollingImage(poseAt, ground, rig, stamp, readout),
+                         test::rollingImage(poseAt, ground, rig, stamp, readout, true));
     const ReadoutEstimate& found = output.approach.readout;
     ratios.found = found.time;
     ratios.time_stddev = std::sqrt(found.variance);
     if (i < kFirst || output.approach.step.failure || !std::isfinite(output.landing.raw_height)) continue;
-    const test::Pose now = test::movingPose(stamp);
+    if (readout != 0 && !found.known()) continue;  // nothing has been seen of it yet
+    const test::Pose now = poseAt(stamp);
     const auto take = [](double error, double variance, double& largest) {
       largest = std::max(largest, std::abs(error) / std::sqrt(variance));
     };
     const ApproachAngleResult::Motion& step = output.approach.step;
-    take(step.angle - test::Movement(test::movingPose(stamp - kPeriod), now).angle, step.angle_variance,
-         ratios.angle);
+    take(step.angle - test::Movement(poseAt(stamp - kPeriod), now).angle, step.angle_variance, ratios.angle);
     take(output.landing.raw_height - now.height(), output.landing.raw_height_variance, ratios.height);
     take(found.time - readout, found.variance, ratios.time);
     ++ratios.count;
@@ -108,6 +119,20 @@ TEST(RollingShutter, ThatNobodyToldOfIsClaimedAndFound) {
   EXPECT_GT(untoldRatios(kReadout).found, 0.2 * kReadout);
 }
 
+TEST(RollingShutter, ThatNobodyToldOfIsSeenByItsRowsAndThenEstimated) {
+  for (const double readout : {kReadout, -kReadout}) {
+    const UntoldRatios ratios = untoldRatios(readout, false, gustyPose);
+    ASSERT_GT(ratios.count, 5);
+    EXPECT_LT(ratios.height, 3) << readout;
+    EXPECT_LT(std::abs(ratios.found - readout), 3 * ratios.time_stddev) << readout;
+    EXPECT_GT(ratios.time_stddev, 1e-3) << readout;
+  }
+  const UntoldRatios global = untoldRatios(0, false, gustyPose);
+  EXPECT_EQ(global.found, 0);
+  EXPECT_EQ(global.time_stddev, 0) << "taken as global: nothing speaks against it";
+  EXPECT_LT(global.angle, 3);
+}
+
 TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const cv::Mat image = test::GroundRenderer(12).left(rig, test::movingPose(0));
@@ -118,7 +143,9 @@ TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
       parameters.rig.estimate_readout_time = asked;
       Pipeline pipeline =
           Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
-      EXPECT_EQ(pipeline.process(0, image, image).approach.readout.known(), asked && !given);
+      const ReadoutEstimate& readout = pipeline.process(0, image, image).approach.readout;
+      EXPECT_EQ(readout.known(), asked && !given);
+      EXPECT_EQ(readout.given(), given);
     }
   }
 }
@@ -153,8 +180,8 @@ struct Angles {
   int heights = 0;            ///< that are valid
 };
 
-/// vibration: of the pitch, rad.
-Angles anglesWith(double vibration) {
+/// vibration: of the pitch, rad. told: of the readout time.
+Angles anglesWith(double vibration, bool told = true) {
   constexpr int kPairs = 20, kFirst = 10;
   constexpr double kFrequency = 37;  // Hz
   const StereoRig rig = test::makeRig(320, 240, 0.3);
@@ -165,7 +192,7 @@ Angles anglesWith(double vibration) {
     return pose;
   };
   Parameters parameters;
-  parameters.rig.readout_time = kReadout;
+  if (told) parameters.rig.readout_time = kReadout;
   Pipeline pipeline =
       Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
   Angles angles;
@@ -193,6 +220,9 @@ TEST(RollingShutter, ThatShakesTellsNoAngle) {
   EXPECT_GT(shaken.pairs, 5);
   EXPECT_EQ(shaken.failed, shaken.pairs);
   EXPECT_EQ(shaken.heights, shaken.pairs) << "stereo needs no motion";
+  const Angles untold = anglesWith(0.1 * test::kDegree, false);
+  EXPECT_GT(untold.pairs, 5);
+  EXPECT_GE(untold.failed, untold.pairs - 1) << "one pair at which the estimate begins";
   const Angles still = anglesWith(0);
   EXPECT_LT(still.largest_variance, 1e-3);
   EXPECT_EQ(still.failed, 0);

@@ -24,8 +24,8 @@ struct Readout {
 /// time that is not given counts as 0.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
-/// A readout of 1 s when the time has to be estimated. It shows the effect of the unknown time. Otherwise a
-/// global shutter.
+/// A readout of 1 s when no time is given. It shows the effect of the unknown time, and the order of the
+/// rows. Otherwise a global shutter.
 Readout unknownReadout(const RigParameters& parameters);
 
 /// Tells when the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a

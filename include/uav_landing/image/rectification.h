@@ -39,9 +39,9 @@ struct RigModel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;
   RowTimes left_times = {}, right_times = {};
-  /// Times of the left image at a readout of 1 s, if the readout time has to be estimated. Else a global
-  /// shutter.
+  /// Times of the left image at a readout of 1 s, if no readout time is given. Else a global shutter.
   RowTimes left_unit_times = {};
+  bool estimates_readout = false;  ///< whether the readout time has to be estimated
 };
 /// Refuses masks of another size than the raw images. parameters: used for the readout.
 Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,

@@ -44,11 +44,15 @@ struct BaselineDirection {
   bool known() const { return t.allFinite() && covariance.allFinite(); }
 };
 
-/// Readout time of the cameras, estimated from what moves in the images. Not known unless it is estimated.
+/// Readout time of the cameras, estimated from what moves in the images. Unknown when one is given.
 struct ReadoutEstimate {
   double time = kUnknown;      ///< s, from the first line to the last
   double variance = kUnknown;  ///< s^2; an error is the same in all pairs
 
+  /// No time is given, and nothing speaks against a global shutter.
+  static ReadoutEstimate global() { return {0, 0}; }
+  bool given() const { return !(variance >= 0); }
+  /// Whether a time is estimated: none is given, and the shutter is not taken as global.
   bool known() const { return variance > 0; }
 };
 /// Advice for an estimate that is certain and not that of a global shutter; else empty.
@@ -73,8 +77,8 @@ struct StereoDepthResult {
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
   /// With row times: plane_rate is how fast g changes according to the pairs before, 1/m/s. It carried g to
   /// the stamp. plane_by_rate is the derivative of g by that rate, s. Both are zero when all rows are exposed
-  /// at once. When the readout time is estimated, nothing was carried, and the derivative is that of a
-  /// readout of 1 s.
+  /// at once. When no readout time is given, nothing was carried, and the derivative is that of a readout of
+  /// 1 s.
   Eigen::Vector3d plane_rate = Eigen::Vector3d::Zero();
   Eigen::Matrix3d plane_by_rate = Eigen::Matrix3d::Zero();
   /// Share of the plane's covariance that is not noise of the images, above 0 and up to 1. The covariance is

@@ -36,7 +36,7 @@ Readout rightReadout(const RigParameters& p) { return p.upside_down ? namedLeft(
 Readout unknownReadout(const RigParameters& p) {
   const bool given = !std::isnan(p.readout_time) || (p.upside_down && !std::isnan(p.right_readout_time));
   Readout left = leftReadout(p);
-  left.time = given || !p.estimate_readout_time ? 0 : 1;
+  left.time = given ? 0 : 1;
   return left;
 }
 

@@ -103,8 +103,9 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
 }
 
 bool isReadout(const ReadoutEstimate& readout) {
-  return within(readout.time, kLongestReadout) && readout.variance > 0 &&
-         readout.variance <= kLongestReadout * kLongestReadout;
+  const bool global = readout.time == 0 && readout.variance == 0;
+  return global || (within(readout.time, kLongestReadout) && readout.variance > 0 &&
+                    readout.variance <= kLongestReadout * kLongestReadout);
 }
 
 void keepImu(AttitudePrior& imu) {

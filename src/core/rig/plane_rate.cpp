@@ -25,7 +25,7 @@ void carryTo(const Eigen::Vector3d& rate, StereoDepthResult& stereo) {
   stereo.plane_rate = rate;
 }
 
-// Does as if the estimated readout time had been given and nothing had been carried yet. A becomes that of
+// Does as if this readout time had been given and nothing had been carried yet. A becomes that of
 // the estimated time.
 Eigen::Vector3d takeReadout(const Eigen::Vector3d& rate, const ReadoutEstimate& readout,
                             StereoDepthResult& stereo) {
@@ -45,13 +45,13 @@ Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& reado
   Eigen::Vector3d by_time = Eigen::Vector3d::Zero();
   if (!hasRowTimes(stereo)) return by_time;
   const Eigen::Vector3d rate = planeRate(PlaneVector(stereo.plane.g), motion);
-  if (readout.known()) by_time = takeReadout(rate, readout, stereo);
+  if (!readout.given()) by_time = takeReadout(rate, readout, stereo);
   carryTo(rate, stereo);
   return by_time;
 }
 
 Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& stereo) {
-  if (!hasRowTimes(stereo) || !readout.known()) return Eigen::Vector3d::Zero();
+  if (!hasRowTimes(stereo) || readout.given()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d rate = stereo.plane_rate;
   const Eigen::Vector3d by_time = takeReadout(rate, readout, stereo);
   carryTo(rate, stereo);
@@ -64,10 +64,10 @@ void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& 
   const bool known = step.duration > 0 && step.rotation.allFinite() &&
                      step.translation_over_height.allFinite() && step.covariance.allFinite();
   if (!known) {
-    if (readout.known())
-      carryPlane(readout, stereo);
-    else
+    if (readout.given())
       addVariance(stereo.plane_rate * stereo.plane_rate.transpose(), stereo);
+    else
+      carryPlane(readout, stereo);
     return;
   }
   const Eigen::Vector3d g = stereo.plane.g;

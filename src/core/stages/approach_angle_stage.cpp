@@ -16,6 +16,7 @@
 #include "motion/path/motion_tracker.h"
 #include "motion/step/readout_filter.h"
 #include "results/result_check.h"
+#include "results/row_motion.h"
 #include "rig/plane_rate.h"
 #include "runway/direction/runway_direction.h"
 #include "runway/position/runway_tracker.h"
@@ -58,7 +59,7 @@ struct ApproachAngleStage::Implementation {
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   ReadoutCheck readout;
-  std::optional<ReadoutFilter> readout_time;  // used when no readout time is given
+  std::optional<ReadoutFilter> readout_time;  // while it is estimated
   Eigen::Vector3d last_normal = Eigen::Vector3d::Constant(kUnknown);
   Timings timings;
 
@@ -73,7 +74,7 @@ struct ApproachAngleStage::Implementation {
         readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
-    if (!rig.left_unit_times.atOnce()) readout_time.emplace();
+    forgetReadout();
   }
 
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
@@ -81,7 +82,7 @@ struct ApproachAngleStage::Implementation {
     timings.clear();
     ApproachAngleResult result;
     result.stamp = stamp;
-    if (readout_time) result.readout = readout_time->estimate();
+    result.readout = currentReadout();
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
     result.failure = checkPair(model, left, right);
     const Failure too_long = readout.follow(stamp);
@@ -153,6 +154,27 @@ struct ApproachAngleStage::Implementation {
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     result.sight = sighting.process(stamp, images, sighted_ground.of(stereo, has_plane, result.imu),
                                     waits || (has_plane && tracker.needsSearch()));
+  }
+
+  void forgetReadout() {
+    readout_time.reset();
+    if (model.estimates_readout) readout_time.emplace();
+  }
+
+  ReadoutEstimate currentReadout() const {
+    if (readout_time) return readout_time->estimate();
+    return model.left_unit_times.atOnce() ? ReadoutEstimate() : ReadoutEstimate::global();
+  }
+
+  // When nothing is told of the shutter it counts as global, until rows are seen to move on their own.
+  void learnReadout(const MotionTracker::Result& motion) {
+    if (readout_time) {
+      if (motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
+    } else if (!model.left_unit_times.atOnce() && (rowsMove(motion.step) || rowsMove(motion.window))) {
+      constexpr double kNotGlobal = 0;
+      readout_time.emplace(kNotGlobal);
+      tracker.forgetShake();
+    }
   }
 
   // Maps rows to the stamp with the last motion over the last known ground.
@@ -302,7 +324,7 @@ struct ApproachAngleStage::Implementation {
     const GroundInView seen{{result.n, normal.covariance}, normal.by_time, corners};
     const MotionTracker::Result motion =
         repeated ? tracker.repeat(stamp) : tracker.process(stamp, left, seen, timings, conditions);
-    if (readout_time && motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
+    learnReadout(motion);
     ScopedTimer timer(timings, "foe_and_angle");
     const StepFoe found =
         findStepFoe(model.rig, tracker, motion, {result.n, result.n_covariance}, parameters);
@@ -341,7 +363,7 @@ void ApproachAngleStage::reset() {
   implementation_->first_search = true;
   implementation_->lines_left_out = false;
   implementation_->readout.reset();
-  if (implementation_->readout_time) implementation_->readout_time.emplace();
+  implementation_->forgetReadout();
   implementation_->last_normal.setConstant(kUnknown);
 }
 

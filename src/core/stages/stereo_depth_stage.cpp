@@ -107,8 +107,8 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
-  // The drift that the rows of the pair see. When the readout time has to be estimated, this is the drift at
-  // a readout of 1 s.
+  // The drift that the rows of the pair see. When no readout time is given, this is the drift at a readout of
+  // 1 s.
   PlaneDrift rowDrift() const {
     return {fine.drift.rate, model.left_unit_times.atOnce() ? fine.drift.times : &model.left_unit_times};
   }

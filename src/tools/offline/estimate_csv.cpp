@@ -55,7 +55,8 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.number(std::sqrt(landing.yaw_variance) * kDegrees).flag(std::isfinite(landing.yaw));
   row.text(toString(landing.yaw_failure.reason)).number(landing.other_runway_probability);
   const ReadoutEstimate& readout = pair.output.approach.readout;
-  row.number(readout.time).number(std::sqrt(readout.variance));
+  const bool estimated = readout.known();
+  row.number(estimated ? readout.time : kUnknown).number(estimated ? std::sqrt(readout.variance) : kUnknown);
   row.flag(landing.height_above_runway_known);
   row.number(landing.height_above_runway_protection_level).number(landing.height_above_runway_limit);
   row.text(toString(landing.height_origin)).text(toString(landing.runway_failure.reason));

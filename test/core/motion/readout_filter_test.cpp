@@ -25,6 +25,13 @@ TEST(ReadoutFilter, BeginsWithWhatAnyCameraMayHave) {
   EXPECT_NEAR(stddevOf(filter), 0.02 * std::sqrt(0.8), 1e-3);
 }
 
+TEST(ReadoutFilter, BeginsWithAnyTimeWhereRowsWereSeenToRoll) {
+  const ReadoutFilter filter(0);
+  EXPECT_EQ(filter.estimate().time, 0);
+  EXPECT_NEAR(stddevOf(filter), 0.02, 1e-3);
+  EXPECT_EQ(filter.globalProbability(), 0);
+}
+
 TEST(ReadoutFilter, FindsTheTimeAndKnowsItBetterAndBetter) {
   constexpr double kTime = 0.03, kStep = 0.05, kOfStep = 0.01;  // s
   ReadoutFilter filter;

@@ -127,7 +127,7 @@ TEST(ReadoutShift, IsNotTakenForRowsThatShake) {
                                                           {step.motion,
                                                            {step.truth.n, test::across(step.truth.n, 1e-3)},
                                                            nullptr,
-                                                           {&step.unit, &memory, Eigen::Vector3d::Zero()}},
+                                                           {{&step.unit, &memory}, Eigen::Vector3d::Zero()}},
                                                           20, work);
     ASSERT_TRUE(found);
     EXPECT_TRUE(found->of_shake.isZero(0)) << i;

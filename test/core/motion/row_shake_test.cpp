@@ -73,14 +73,14 @@ struct ShakenStep {
     }
   }
 
-  Expected<MotionEstimate> estimate(ShakeMemory* memory) const {
+  Expected<MotionEstimate> estimate(ShakeMemory* memory, bool told = true) const {
     constexpr double kSlope = 1e-4;  // rad
     MotionMemory work;
     return estimateMotion(motionRig(), matches,
                           {{truth.movement.R, truth.t},
                            {truth.n, test::across(truth.n, kSlope)},
                            nullptr,
-                           {&unitTimes(), memory, Eigen::Vector3d::Zero()}},
+                           {{&unitTimes(), memory, told}, Eigen::Vector3d::Zero()}},
                           20, work);
   }
   /// Error of the translation across the way, up and down, over its claimed standard deviation.
@@ -117,6 +117,25 @@ TEST(RowShake, OfVibrationIsFoundAndClaimed) {
     EXPECT_GT(ratios.without, 3) << frequency << ": vibration must matter";
     EXPECT_LT(ratios.with, 0.5 * ratios.without) << frequency;
     EXPECT_LT(ratios.with, 3) << frequency;
+  }
+}
+
+TEST(RowShake, IsFoundAsWellWhereNothingIsToldOfTheRows) {
+  ShakeMemory memory, memory_of_untold;
+  for (int i = 0; i < 20; ++i) {
+    const ShakenStep step({0.05 * kDegree, 37, 0}, kPeriod * i, i);
+    const Expected<MotionEstimate> told = step.estimate(&memory),
+                                   untold = step.estimate(&memory_of_untold, false);
+    ASSERT_TRUE(told && untold);
+    if (i < 3) continue;
+    EXPECT_FALSE(told->of_shake.isZero(0)) << i;
+    EXPECT_FALSE(untold->of_shake.isZero(0)) << i;
+  }
+  ShakeMemory of_noise;
+  for (int i = 0; i < 60; ++i) {
+    const Expected<MotionEstimate> found = ShakenStep(Vibration(), kPeriod * i, i).estimate(&of_noise, false);
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->of_shake.isZero(0)) << i;
   }
 }
 

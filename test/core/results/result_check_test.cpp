@@ -251,12 +251,13 @@ TEST(ResultCheck, AReadoutTimeThatNoCameraHasIsLeftOut) {
   const auto isKept = [](double time, double variance) {
     ApproachAngleResult result;
     result.readout = {time, variance};
-    return checked(result).readout.known();
+    return !checked(result).readout.given();
   };
   EXPECT_TRUE(isKept(-0.03, 1e-5));
   EXPECT_FALSE(isKept(2, 1e-5));
   EXPECT_FALSE(isKept(kUnknown, 1e-5));
-  EXPECT_FALSE(isKept(0.03, 0)) << "a message that was never filled in";
+  EXPECT_TRUE(isKept(0, 0)) << "taken as global";
+  EXPECT_FALSE(isKept(0.03, 0));
   EXPECT_FALSE(isKept(0.03, kUnknown));
   EXPECT_FALSE(isKept(0.03, 2));
 }

@@ -75,6 +75,19 @@ TEST(PlaneRate, ChangesNothingWithoutRowTimes) {
   EXPECT_EQ(pair.plane.covariance, before.covariance);
 }
 
+TEST(PlaneRate, ChangesNothingWhereTheShutterIsTakenAsGlobal) {
+  StereoDepthResult pair = pairOf(kPlane, Eigen::Vector3d::Zero());
+  pair.plane_by_rate = -0.25 * Eigen::Matrix3d::Identity();  // of a readout of 1 s
+  pair.plane_rate = {0, 0.1, 0};
+  const GroundPlane before = pair.plane;
+  for (const ApproachAngleResult::Motion& step : {stepOf(0.05), ApproachAngleResult::Motion()}) {
+    StereoDepthResult carried = pair;
+    carryPlane(step, ReadoutEstimate::global(), carried);
+    EXPECT_EQ(carried.plane.g, before.g);
+    EXPECT_EQ(carried.plane.covariance, before.covariance);
+  }
+}
+
 TEST(PlaneRate, ByAnEstimatedReadoutTimeCorrectsThePlaneAndClaimsItsError) {
   // Rows that are late by a quarter of a readout of 32 ms, which is given as one of 1 s.
   constexpr double kReadout = 0.032, kStddev = 0.004;

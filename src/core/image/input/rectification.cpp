@@ -159,12 +159,14 @@ Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalib
   if (!rig) return tl::unexpected(rig.error());
   if (Failure failure = checkMaskSize(masks.left, left)) return tl::unexpected(failure);
   if (Failure failure = checkMaskSize(masks.right, right)) return tl::unexpected(failure);
+  const Readout unknown = unknownReadout(parameters);
   return RigModel{*rig,
                   validityMask(sourceMaps(left.ofDeliveredImage()), masks.left.usable),
                   validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable),
                   RowTimes(left, leftReadout(parameters)),
                   RowTimes(right, rightReadout(parameters)),
-                  RowTimes(left, unknownReadout(parameters))};
+                  RowTimes(left, unknown),
+                  parameters.estimate_readout_time && unknown.time != 0};
 }
 
 }  // namespace uav_landing

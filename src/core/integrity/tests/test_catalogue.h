@@ -68,7 +68,8 @@ struct TestLimit {
   TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kAngleDoubted, TestLimit::fixed(1), "rad",                \
        "1 σ by which rows of a rolling shutter that move on their own, as vibration moves them, move the approach "    \
        "angle: at most a third of the angle's own 1 σ",                                                                \
-       "approach angle not valid; the vertical speed by this motion counts for nothing")                               \
+       "approach angle not valid; the vertical speed by this motion counts for nothing. Where nothing is told of "    \
+       "the shutter, its readout time is estimated from then on")                                                      \
   TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()),   \
        "rad",                                                                                                          \
        "ground normal of the pair, with that of the pairs before, turned by the rotation since (5 σ); needs "          \

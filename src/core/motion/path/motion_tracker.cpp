@@ -126,7 +126,7 @@ void MotionTracker::reset() {
   past_.clear();
   last_step_.reset();
   search_.reset();
-  step_shake_ = window_shake_ = {};
+  forgetShake();
   filter_.reset();
   last_rate_stddev_ = 0;
   last_window_ = {};
@@ -136,6 +136,11 @@ void MotionTracker::reset() {
 ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditions& conditions) const {
   if (!conditions.readout.known()) return {};
   return {&unit_times_, conditions.readout.time, seen.normal_by_readout};
+}
+
+ShakeWatch MotionTracker::watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const {
+  if (!mayRoll()) return {};
+  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known()};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -206,7 +211,7 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         regular,
                         conditions.time,
                         &times_,
-                        &step_shake_,
+                        watchOf(step_shake_, conditions.readout),
                         doubtOf(seen, conditions),
                         past_.back().motion};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
@@ -274,7 +279,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
     const MotionPrior prior{
-        predicted, seen.normal, nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time}};
+        predicted, seen.normal, nullptr, {watchOf(window_shake_, conditions.readout), doubt.normal_by_time}};
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
@@ -314,8 +319,7 @@ ApproachAngleResult::Motion MotionTracker::describe(
   const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
   angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
            angleByReadout(*estimate, readout)};
-  const bool rolling = !times_.atOnce() || !unit_times_.atOnce();
-  if (rolling) setRowMotion(*estimate, motion);
+  if (mayRoll()) setRowMotion(*estimate, motion);
   angle->shaken = rowsMove(motion);
   if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;

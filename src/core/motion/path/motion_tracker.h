@@ -76,6 +76,8 @@ class MotionTracker {
   /// not later.
   Result repeat(double stamp) const;
   void reset();
+  /// Call it when a readout time begins to be estimated. What counted as shake so far may have been that.
+  void forgetShake() { step_shake_ = window_shake_ = {}; }
   /// Corners that the last process() followed to the previous frame, including those that contradict the
   /// motion.
   const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
@@ -89,6 +91,8 @@ class MotionTracker {
   };
 
   ReadoutDoubt doubtOf(const GroundInView& seen, const StepConditions& conditions) const;
+  bool mayRoll() const { return !times_.atOnce() || !unit_times_.atOnce(); }
+  ShakeWatch watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
                     Result& result);

@@ -159,15 +159,23 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
   return clusters.shared();
 }
 
-// Covariance of the motion with the given normal almost ignored. The rig may make that normal wrong in the
-// same way in every pair, and such an error would look like a readout time. information: with the prior.
-Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& normal,
-                                const Eigen::Matrix3d& prior) {
+// Information on the motion with the given normal almost ignored. The rig may make that normal wrong in the
+// same way in every pair, and such an error would look like a readout time or like shake. information: with
+// the prior.
+Matrix9d withAnyNormal(Matrix9d information, const Eigen::Vector3d& normal, const Eigen::Matrix3d& prior) {
   constexpr double kAnySlope = 0.02;  // rad
   const Eigen::Matrix3d any =
       kAnySlope * kAnySlope * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
   information.bottomRightCorner<3, 3>() += priorInformation(normal, any) - prior;
-  return information.ldlt().solve(Matrix9d::Identity());
+  return information;
+}
+
+// by_prior: right side from the prior of the normal, at the motion that fits best.
+MotionUnknown motionUnknown(const Matrix9d& information, const GivenPrior& given,
+                            const Eigen::Vector3d& by_prior) {
+  MotionUnknown motion{information, withAnyNormal(information, given.n, given.information), Vector9d::Zero()};
+  motion.right_with_any_normal.tail<3>() = -by_prior;
+  return motion;
 }
 
 // Estimates the time as one more unknown by the Schur complement. Residuals grow with the time, so the
@@ -229,8 +237,11 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   if (!found) return tl::make_unexpected(found.error());
   MotionState& state = found->state;
   Matrix9d& information = found->information;
-  const RowUnknowns beside = findRowUnknowns(
-      rig, matches, {rows, found->linearised, found->step, information, found->factor}, prior.rows, memory);
+  const RowUnknowns beside =
+      findRowUnknowns(rig, matches,
+                      {rows, found->linearised, found->step,
+                       motionUnknown(information, given, given.pull(state)), found->factor},
+                      prior.rows, memory);
   std::optional<Matrix9d> without_shake;
   if (beside.shake.found()) {
     without_shake = information.ldlt().solve(Matrix9d::Identity());
@@ -256,8 +267,9 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     Vector9d moved = with_time;
     moved.tail<3>() += given.information * prior.rows.normal_by_readout;
     result.readout.by_time = turn * covariance * moved;
-    tellTime(beside.by_time, covarianceWithoutPrior(information, normal, given.information),
-             given.pull(state), result.readout);
+    const Matrix9d any_normal = withAnyNormal(information, normal, given.information);
+    tellTime(beside.by_time, any_normal.ldlt().solve(Matrix9d::Identity()), given.pull(state),
+             result.readout);
   }
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
   result.of_normal = by_normal * given.information * by_normal.transpose();

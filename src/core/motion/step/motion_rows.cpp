@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "estimation/robust.h"
 #include "geometry/rotation.h"
@@ -166,14 +165,18 @@ SumsByTime MotionRows::sumsByTime(const MotionRows& later, double seconds, const
 
 std::vector<RowNode> MotionRows::rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                           const MotionRows* later, double seconds) const {
-  std::map<int, RowNode> by_place;
+  if (shares.empty()) return {};
+  const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
+  const int first = static_cast<int>(std::floor(RowNode::kInReadout * *least));
+  std::vector<RowNode> list(static_cast<int>(std::floor(RowNode::kInReadout * *most)) - first + 2);
   for (size_t match = 0; match < count_; ++match) {
     const double weight = outputs_[kRayWeight * padded_ + match];
     if (!(weight > 0)) continue;
-    const double place = RowNode::kInReadout * shares[match];
-    const int above = static_cast<int>(std::floor(place));
-    const std::array<double, 2> parts = {above + 1 - place, place - above};
-    const std::array<RowNode*, 2> nodes = {&by_place[above], &by_place[above + 1]};
+    const double place = RowNode::kInReadout * shares[match] - first;
+    const auto above = static_cast<size_t>(place);
+    const std::array<double, 2> parts = {static_cast<double>(above) + 1 - place,
+                                         place - static_cast<double>(above)};
+    const std::array<RowNode*, 2> nodes = {&list[above], &list[above + 1]};
     const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
     for (const int row : {0, kRayRow}) {
       Vector9d by;
@@ -194,12 +197,7 @@ std::vector<RowNode> MotionRows::rowNodes(const std::vector<double>& shares, con
     }
     nodes[0]->count += 1;
   }
-  std::vector<RowNode> nodes;
-  for (auto& [place, node] : by_place) {
-    node.share = place / static_cast<double>(RowNode::kInReadout);
-    nodes.push_back(node);
-  }
-  return nodes;
+  return list;
 }
 
 Eigen::Matrix<double, 6, 1> MotionRows::solveExactly() const {

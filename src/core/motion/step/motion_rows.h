@@ -64,9 +64,9 @@ class MotionRows {
   /// linearised at the same state. The residuals are those after one more step. Call it after accumulate().
   SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
 
-  /// Sums for the nodes of a rotation over the rows, after one more step. Returns only nodes that have
-  /// matches beside them. shares: times of the matches as a share of the readout. later: as above, or null
-  /// when the readout time is no unknown. Call it after accumulate().
+  /// Sums for the nodes of a rotation over the rows, after one more step, from the first node with a match
+  /// beside it to the last one. shares: times of the matches as a share of the readout. later: as above, or
+  /// null when the readout time is no unknown. Call it after accumulate().
   std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                 const MotionRows* later, double seconds) const;
 
@@ -89,6 +89,7 @@ class MotionRows {
 struct MotionMemory {
   MotionRows all, drawn;
   std::vector<TemporalMatch> shifted;
+  ShakeShapes shapes;
 };
 
 }  // namespace uav_landing

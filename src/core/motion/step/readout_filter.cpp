@@ -33,7 +33,7 @@ void ReadoutFilter::learn(const ReadoutEffect& effect, double duration) {
 // The ratio of the densities at 0, after and before the steps, is the evidence for a global shutter.
 double ReadoutFilter::globalProbability() const {
   const double before = varianceBy(1 / (kPriorStddev * kPriorStddev)), variance = varianceBy(information_);
-  const double odds = kGlobalBeforehand / (1 - kGlobalBeforehand) * std::sqrt(before / variance) *
+  const double odds = global_beforehand_ / (1 - global_beforehand_) * std::sqrt(before / variance) *
                       std::exp(-time_ * time_ / (2 * variance));
   return odds / (1 + odds);
 }

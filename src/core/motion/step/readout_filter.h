@@ -13,9 +13,13 @@ class ReadoutFilter {
  public:
   /// 1 sigma of a rolling shutter's time before any measurement, s. It covers 5 to 35 ms in both directions.
   static constexpr double kPriorStddev = 0.02;
-  /// Probability of a global shutter before any measurement. Global shutters are more frequent than this. A
+  /// Probability of a global shutter when nothing is known. Global shutters are more frequent than this. A
   /// low value is safer, because too narrow a claim does more harm than too wide a one.
   static constexpr double kGlobalBeforehand = 0.2;
+
+  /// global_beforehand: probability of a global shutter before any measurement.
+  explicit ReadoutFilter(double global_beforehand = kGlobalBeforehand)
+      : global_beforehand_(global_beforehand) {}
 
   /// effect: of a motion up to this pair, which was corrected with the estimate so far. duration: time since
   /// the previous pair, s.
@@ -27,6 +31,7 @@ class ReadoutFilter {
   double globalProbability() const;
 
  private:
+  double global_beforehand_;
   double time_ = 0;  // of the hypothesis "rolling shutter", s
   double information_ = 1 / (kPriorStddev * kPriorStddev);
 };

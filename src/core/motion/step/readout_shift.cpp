@@ -11,11 +11,6 @@ RowMotion slowed(const RowMotion& motion) { return {kApart * motion.w, kApart * 
 
 }  // namespace
 
-const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt) {
-  if (doubt.times != nullptr) return doubt.times;
-  return given != nullptr && !given->atOnce() ? given : nullptr;
-}
-
 void shiftByReadout(const StereoRig& rig, const MotionOverGround& over_ground, double time,
                     std::vector<TemporalMatch>& matches) {
   const auto& [motion, normal, unit] = over_ground;

@@ -18,10 +18,6 @@ struct ReadoutDoubt {
   Eigen::Vector3d normal_by_time = Eigen::Vector3d::Zero();
 };
 
-/// Row times of a rolling shutter: the times in `doubt` when the readout time is estimated, else the given
-/// ones. Null when all rows are exposed at once.
-const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt);
-
 /// Sets by_readout of the matches. Then it moves the matches to where they would be with all rows exposed at
 /// the stamps, according to the estimated time (s). The whole shift is applied to the place then. The effect
 /// is linear in the readout time as long as that is much shorter than the step.

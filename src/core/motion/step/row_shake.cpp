@@ -10,15 +10,16 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found.
-constexpr double kLeastLikelihood = 100;
+// Least logarithm of the likelihood ratio at which shake is found. Where nothing is told of the rows, a sign
+// of a rolling shutter only makes claims wider for a while, so less is enough.
+constexpr double kLeastLikelihood = 100, kLeastUntold = 60;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
 /// The nodes as one linear system with three unknowns each.
 struct NodeSystem {
   Eigen::MatrixXd rotation, with_motion;
-  Eigen::VectorXd score, with_time, shares;
+  Eigen::VectorXd score, with_time;
 
   explicit NodeSystem(const std::vector<RowNode>& nodes) {
     const auto n = static_cast<Eigen::Index>(nodes.size());
@@ -26,7 +27,6 @@ struct NodeSystem {
     with_motion.resize(3 * n, 9);
     score.resize(3 * n);
     with_time.resize(3 * n);
-    shares.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       rotation.block<3, 3>(3 * i, 3 * i) = nodes[i].rotation;
       if (i + 1 < n) {
@@ -36,44 +36,60 @@ struct NodeSystem {
       with_motion.middleRows<3>(3 * i) = nodes[i].with_motion;
       score.segment<3>(3 * i) = nodes[i].score;
       with_time.segment<3>(3 * i) = nodes[i].with_time;
-      shares[i] = nodes[i].share;
     }
-  }
-
-  // Root L of the covariance L L' of a shake of unit variance around one frequency.
-  Eigen::MatrixXd root(double cycles) const {
-    constexpr double kAlike = 0.5;  // cycles, so the frequency is known to a third
-    constexpr double kOwn = 1e-3;   // independent part of each node, so that the root exists
-    const Eigen::Index n = shares.size();
-    Eigen::MatrixXd covariance(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const double apart = (shares[i] - shares[j]) * cycles;
-        covariance(i, j) =
-            std::cos(2 * M_PI * apart) * std::exp(-0.5 * std::pow(apart / kAlike, 2)) + (i == j) * kOwn;
-      }
-    const Eigen::MatrixXd L = covariance.llt().matrixL();
-    Eigen::MatrixXd root = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j)
-        root.block<3, 3>(3 * i, 3 * j) = L(i, j) * Eigen::Matrix3d::Identity();
-    return root;
   }
 };
 
+// Root L of the covariance L L' of shake of unit variance around one frequency, for one axis.
+Eigen::MatrixXd shapesOf(Eigen::Index nodes, double cycles) {
+  constexpr double kAlike = 0.5;   // cycles, so the frequency is known to a third
+  constexpr double kLeast = 1e-2;  // shapes of less variance over the nodes are left out
+  Eigen::MatrixXd covariance(nodes, nodes);
+  for (Eigen::Index i = 0; i < nodes; ++i)
+    for (Eigen::Index j = 0; j < nodes; ++j) {
+      const double apart = static_cast<double>(i - j) / RowNode::kInReadout * cycles;
+      covariance(i, j) = std::cos(2 * M_PI * apart) * std::exp(-0.5 * std::pow(apart / kAlike, 2));
+    }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+  const Eigen::VectorXd& variances = axes.eigenvalues();
+  const Eigen::Index kept = (variances.array() > kLeast).count();
+  return axes.eigenvectors().rightCols(kept) * variances.tail(kept).cwiseSqrt().asDiagonal();
+}
+
+// The same shapes for all three axes.
+Eigen::MatrixXd forThreeAxes(const Eigen::MatrixXd& root) {
+  Eigen::MatrixXd three = Eigen::MatrixXd::Zero(3 * root.rows(), 3 * root.cols());
+  for (Eigen::Index i = 0; i < root.rows(); ++i)
+    for (Eigen::Index j = 0; j < root.cols(); ++j)
+      three.block<3, 3>(3 * i, 3 * j) = root(i, j) * Eigen::Matrix3d::Identity();
+  return three;
+}
+
+// Part of the weighted sum of squared residuals that rotations of the nodes explain.
+double squaresOfNodes(const NodeSystem& system) {
+  constexpr double kAnything = 1;  // rad
+  const Eigen::Index n = system.score.size();
+  const Eigen::MatrixXd some = system.rotation + Eigen::MatrixXd::Identity(n, n) / (kAnything * kAnything);
+  return system.score.dot(some.ldlt().solve(system.score));
+}
+
 // Factor by which the matches' variances are larger than they claim, from the residuals that no shake
 // explains.
-double noiseBeside(const std::vector<RowNode>& nodes, const NodeSystem& system) {
-  constexpr double kAnything = 1;  // rad
+double noiseBeside(const std::vector<RowNode>& nodes, double explained) {
   double squares = 0, count = 0;
   for (const RowNode& node : nodes) {
     squares += node.squares;
     count += 2 * node.count;
   }
-  const Eigen::Index n = system.score.size();
-  const Eigen::MatrixXd some = system.rotation + Eigen::MatrixXd::Identity(n, n) / (kAnything * kAnything);
-  const double left = squares - system.score.dot(some.ldlt().solve(system.score));
-  return count > n ? std::max(1.0, left / (count - n)) : 1;
+  const auto unknowns = static_cast<double>(3 * nodes.size());
+  return count > unknowns ? std::max(1.0, (squares - explained) / (count - unknowns)) : 1;
+}
+
+// Whether rotations of the nodes explain more than noise lets them, by their chi-square.
+bool showsSign(double explained, double noise, size_t nodes) {
+  constexpr double kSign = 2;  // sigma
+  const auto unknowns = static_cast<double>(3 * nodes);
+  return explained / noise > unknowns + kSign * std::sqrt(2 * unknowns);
 }
 
 // Works in the axes of the scores' own covariance M. There a score has the variance d + variance d^2, with
@@ -100,13 +116,15 @@ struct Remainder {
   Eigen::VectorXd score;
 };
 
-Remainder remainderOf(const NodeSystem& system, const Matrix9d& information, const TimeUnknown& time) {
+Remainder remainderOf(const NodeSystem& system, const MotionUnknown& motion, bool any_normal,
+                      const TimeUnknown& time) {
   const bool timed = time.information > 0;
   Eigen::Matrix<double, 10, 10> all = Eigen::Matrix<double, 10, 10>::Identity();
-  all.topLeftCorner<9, 9>() = information;
+  all.topLeftCorner<9, 9>() = any_normal ? motion.information_with_any_normal : motion.information;
   Eigen::MatrixXd with_all = Eigen::MatrixXd::Zero(system.score.size(), 10);
   with_all.leftCols<9>() = system.with_motion;
   Eigen::Matrix<double, 10, 1> right = Eigen::Matrix<double, 10, 1>::Zero();
+  if (any_normal) right.head<9>() = motion.right_with_any_normal;
   if (timed) {
     // Residuals grow with the readout time, so its terms have the opposite sign.
     all(9, 9) = time.information;
@@ -120,12 +138,12 @@ Remainder remainderOf(const NodeSystem& system, const Matrix9d& information, con
           system.score - with_all * solver.solve(right)};
 }
 
-// Eliminates the shake. With K = L L', (N + K^-1)^-1 is L (1 + L' N L)^-1 L'.
+// Eliminates the shake. With K = L L', (N + K^-1)^-1 is L (1 + L' N L)^-1 L'. unit_root: L of unit variance.
 RowShake takenOut(const NodeSystem& system, const Matrix9d& information, double noise,
-                  const ShakeMemory::Size& size) {
+                  const ShakeMemory::Size& size, const Eigen::MatrixXd& unit_root) {
   // The size is the mean of three axes, but one axis may have all of it.
-  const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * system.root(size.cycles);
-  const Eigen::Index n = root.rows();
+  const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * unit_root;
+  const Eigen::Index n = root.cols();
   const Eigen::LDLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
                                            root.transpose() * system.rotation * root / noise);
   const auto hidden = [&](const Eigen::MatrixXd& right) -> Eigen::MatrixXd {
@@ -159,26 +177,38 @@ ShakeMemory::Size ShakeMemory::likeliest() const {
   Size best;
   for (size_t i = 0; i < kCycles.size(); ++i)
     for (int k = 0; k < kStddevs; ++k)
-      if (sums_[i][k] > best.likelihood) best = {stddev(k), kCycles[i], sums_[i][k]};
+      if (sums_[i][k] > best.likelihood) best = {i, stddev(k), sums_[i][k]};
   return best;
 }
 
-RowShake findRowShake(const std::vector<RowNode>& nodes, const Matrix9d& information, const TimeUnknown& time,
-                      ShakeMemory& memory) {
+const ShakeShapes::Roots& ShakeShapes::of(Eigen::Index nodes) {
+  if (roots_[0].rows() == nodes) return roots_;
+  for (size_t i = 0; i < roots_.size(); ++i) roots_[i] = shapesOf(nodes, ShakeMemory::kCycles[i]);
+  return roots_;
+}
+
+RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& motion, const TimeUnknown& time,
+                      const ShakeWatch& watch, ShakeShapes& shapes) {
   if (static_cast<int>(nodes.size()) < kFewestNodes) return {};
   const NodeSystem system(nodes);
-  const double noise = noiseBeside(nodes, system);
-  const Remainder left = remainderOf(system, information, time);
+  const double explained = squaresOfNodes(system), noise = noiseBeside(nodes, explained);
+  ShakeMemory& memory = *watch.memory;
+  if (!watch.told && !showsSign(explained, noise, nodes.size())) {
+    memory.fade();
+    return {};
+  }
+  const Remainder left = remainderOf(system, motion, !watch.told, time);
+  const ShakeShapes::Roots& roots = shapes.of(static_cast<Eigen::Index>(nodes.size()));
   ShakeMemory::Likelihoods likelihoods = {};
-  for (size_t i = 0; i < ShakeMemory::kCycles.size(); ++i) {
-    const Eigen::MatrixXd root = system.root(ShakeMemory::kCycles[i]);
+  for (size_t i = 0; i < roots.size(); ++i) {
+    const Eigen::MatrixXd root = forThreeAxes(roots[i]);
     addLikelihoods(root.transpose() * left.rotation * root, root.transpose() * left.score, noise,
                    likelihoods[i]);
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > kLeastLikelihood)) return {};
-  return takenOut(system, information, noise, size);
+  if (!(size.likelihood > (watch.told ? kLeastLikelihood : kLeastUntold))) return {};
+  return takenOut(system, motion.information, noise, size, forThreeAxes(roots[size.cycles]));
 }
 
 }  // namespace uav_landing

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "motion/step/motion_state.h"
+#include "uav_landing/geometry/row_times.h"
 
 namespace uav_landing {
 
@@ -15,7 +16,6 @@ struct RowNode {
   /// Nodes in a readout. Vibration is nearly linear between two of them.
   static constexpr int kInReadout = 16;
 
-  double share = 0;                                     ///< time of the node as a share of the readout
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();   ///< information on the rotation
   Eigen::Matrix3d with_next = Eigen::Matrix3d::Zero();  ///< product with the rotation of the next node
   Eigen::Matrix<double, 3, 9> with_motion = Eigen::Matrix<double, 3, 9>::Zero();
@@ -35,16 +35,41 @@ class ShakeMemory {
   static double stddev(int k);
 
   struct Size {
-    double stddev = 0, cycles = 0;
+    size_t cycles = 0;      ///< which of kCycles
+    double stddev = 0;      ///< rad
     double likelihood = 0;  ///< logarithm of the likelihood ratio to no shake
   };
   /// Logarithms of the likelihood ratios for one pair. Indices: cycles, then standard deviations.
   using Likelihoods = std::array<std::array<double, kStddevs>, kCycles.size()>;
   void add(const Likelihoods& pair);
+  /// Instead of add(), for a pair without a sign of shake.
+  void fade() { add({}); }
   Size likeliest() const;
 
  private:
   Likelihoods sums_ = {};
+};
+
+/// Where to look for shake.
+struct ShakeWatch {
+  const RowTimes* rows = nullptr;  ///< rows that vibration may turn; null: all are exposed at once
+  ShakeMemory* memory = nullptr;
+  /// False when nothing is told of the rows. They are probably exposed at once, so most pairs show no sign of
+  /// shake, and the likelihoods are not worked out for them.
+  bool told = true;
+};
+
+/// Shapes over the nodes that shake around one frequency can have. Shake is smooth over the nodes, so a few
+/// shapes have nearly all of its variance. The object keeps them between uses.
+class ShakeShapes {
+ public:
+  /// A matrix L for each of ShakeMemory::kCycles. The rows are the nodes. L L' is the covariance of one axis
+  /// of a shake of unit variance.
+  using Roots = std::array<Eigen::MatrixXd, ShakeMemory::kCycles.size()>;
+  const Roots& of(Eigen::Index nodes);
+
+ private:
+  Roots roots_;
 };
 
 /// Rotations of the camera while rows are exposed, as vibration causes them with a rolling shutter. They are
@@ -62,6 +87,15 @@ struct RowShake {
   bool found() const { return variance > 0; }
 };
 
+/// Normal equations of the motion, at the one that fits best.
+struct MotionUnknown {
+  Matrix9d information;  ///< priors included
+  /// The same with a normal that hardly anything is known of, and the right side, as the motion does not fit
+  /// best then.
+  Matrix9d information_with_any_normal;
+  Vector9d right_with_any_normal;
+};
+
 /// Normal equations of a readout time that is estimated: sums at the motion that fits best without it.
 struct TimeUnknown {
   Vector9d with_motion = Vector9d::Zero();
@@ -71,9 +105,10 @@ struct TimeUnknown {
 
 /// Looks for shake in the nodes of one pair. Any part of the residuals that no rotation can explain counts as
 /// noise of the matches, even if they claim less. Shake is found only when it is far beyond that noise over
-/// this pair and the previous ones. information: on the motion, priors included. time: another unknown, which
-/// must not be taken for shake.
-RowShake findRowShake(const std::vector<RowNode>& nodes, const Matrix9d& information, const TimeUnknown& time,
-                      ShakeMemory& memory);
+/// this pair and the previous ones. Where nothing is told of the rows, a wrong normal must not be taken for
+/// shake, as a rig that has turned makes one. nodes: one after the other, without gaps. time: another
+/// unknown, which must not be taken for shake either.
+RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& motion, const TimeUnknown& time,
+                      const ShakeWatch& watch, ShakeShapes& shapes);
 
 }  // namespace uav_landing

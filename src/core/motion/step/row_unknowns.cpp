@@ -60,9 +60,10 @@ RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatc
   const MotionRows* later = found.has_time ? &laterRows(rig, matches, fitted.linearised, memory) : nullptr;
   SumsByTime& by_time = found.by_time;
   if (later != nullptr) by_time = sumsByReadout(fitted.rows, *later, fitted.step, fitted.factor);
-  if (doubt.times == nullptr || doubt.shake == nullptr) return found;
-  found.shake = findRowShake(rowNodes(*doubt.times, matches, fitted, later), fitted.information,
-                             later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
+  if (doubt.shake.rows == nullptr || doubt.shake.memory == nullptr) return found;
+  found.shake =
+      findRowShake(rowNodes(*doubt.shake.rows, matches, fitted, later), fitted.motion,
+                   later != nullptr ? timeUnknown(by_time) : TimeUnknown(), doubt.shake, memory.shapes);
   if (!found.shake.found()) return found;
   by_time.right -= by_time.with_motion.dot(found.shake.step) + found.shake.time_right;
   by_time.with_motion -= found.shake.time_with_motion;

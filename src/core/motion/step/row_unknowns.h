@@ -13,8 +13,7 @@ namespace uav_landing {
 
 /// Possible errors of a motion, because rows are exposed one after the other.
 struct RowDoubt {
-  const RowTimes* times = nullptr;  ///< row times, which allow for shake; null: all rows are exposed at once
-  ShakeMemory* shake = nullptr;
+  ShakeWatch shake;
   /// Derivative of the given normal by a readout time that is estimated, 1/s.
   Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();
 };
@@ -31,8 +30,8 @@ struct FittedRows {
   const MotionRows& rows;         ///< linearised at `linearised`
   const MotionState& linearised;  ///< state before the last step
   const Vector9d& step;           ///< from `linearised` to the result
-  const Matrix9d& information;    ///< on the motion, priors included
-  double factor;                  ///< factor by which variances are larger than the rows claim
+  MotionUnknown motion;
+  double factor;  ///< factor by which variances are larger than the rows claim
 };
 
 RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatch>& matches,

@@ -59,10 +59,7 @@ MotionOverGround StepMatching::overGround(const StepImages& step, const CameraMo
 
 MotionPrior StepMatching::priorOf(const StepImages& step, const CameraMotion& start,
                                   const RotationPrior* rotation) const {
-  return {start,
-          step.normal,
-          rotation,
-          {rollingRows(step.times, step.doubt), step.shake, step.doubt.normal_by_time}};
+  return {start, step.normal, rotation, {step.shake, step.doubt.normal_by_time}};
 }
 
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,

@@ -37,7 +37,7 @@ struct StepImages {
   bool regular = false;  ///< the prediction still holds: hardly longer than the last step (see Steadiness)
   SearchTime time = SearchTime::kAmple;
   const RowTimes* times = nullptr;          ///< row times of the left image
-  ShakeMemory* shake = nullptr;             ///< memory of the shake over frame steps
+  ShakeWatch shake = {};                    ///< over frame steps
   ReadoutDoubt doubt = {};                  ///< when the readout time is not given
   std::optional<RowMotion> rows_then = {};  ///< velocities of the camera then, when they are known
 };
