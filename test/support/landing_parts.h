@@ -15,7 +15,7 @@ namespace test {
 /// T: s since the pair before.
 inline PairInput pairOf(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                         double T = kStep) {
-  PairInput in(usualRig(), stereo, approach, true);
+  PairInput in(usualRig(), stereo, approach, true, true);
   in.T = T;
   return in;
 }

@@ -161,7 +161,7 @@ struct ApproachAngleResult {
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
     /// 1 sigma by which rows that move on their own (vibration) move the angle, and the largest one that the
-    /// angle's variance covers; rad. Unknown when all rows are exposed at once.
+    /// angle's variance covers; rad. Unknown where rig/readout_time is 0.
     double row_motion = kUnknown, row_motion_limit = kUnknown;
     /// Ground normal by what moves in the image, unit, and its covariance (rad^2, rank 2). It is independent
     /// of stereo except for the depth of points off the plane. Unknown when the motion does not show it.

@@ -171,9 +171,8 @@ struct ApproachAngleStage::Implementation {
     if (readout_time) {
       if (motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
     } else if (!model.left_unit_times.atOnce() && (rowsMove(motion.step) || rowsMove(motion.window))) {
-      constexpr double kNotGlobal = 0;
-      readout_time.emplace(kNotGlobal);
-      tracker.forgetShake();
+      readout_time.emplace(ReadoutFilter::kGlobalAfterSign);
+      tracker.forgetRows();
     }
   }
 

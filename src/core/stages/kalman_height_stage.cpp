@@ -20,6 +20,7 @@
 #include "landing/watch/sink_rate_watch.h"
 #include "landing/watch/yaw_failure.h"
 #include "runway/position/position_filter.h"
+#include "uav_landing/geometry/row_times.h"
 
 namespace uav_landing {
 namespace {
@@ -75,6 +76,7 @@ struct KalmanHeightStage::Implementation {
   KalmanHeightParameters parameters;
   RunwayParameters runway;
   double baseline_stddev;
+  bool readout_given;
   LandingClock clock;
   std::optional<Parts> parts;
   Timings timings;
@@ -85,6 +87,7 @@ struct KalmanHeightStage::Implementation {
         parameters(p),
         runway(known),
         baseline_stddev(known_rig.baseline_stddev),
+        readout_given(unknownReadout(known_rig).time == 0),
         clock(p.reset_timeout, p.gate),
         parts(std::in_place, rig, parameters, runway, baseline_stddev, 0) {}
 
@@ -270,8 +273,8 @@ KalmanHeightStage& KalmanHeightStage::operator=(KalmanHeightStage&&) noexcept = 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
                                          const ApproachAngleResult& approach) {
   implementation_->timings.clear();
-  return implementation_->process(
-      {implementation_->rig, stereo, approach, implementation_->parameters.fuse_imu});
+  return implementation_->process({implementation_->rig, stereo, approach,
+                                   implementation_->parameters.fuse_imu, implementation_->readout_given});
 }
 
 LandingResult KalmanHeightStage::timeout(double stamp) { return implementation_->timeout(stamp); }

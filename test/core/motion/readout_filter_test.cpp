@@ -26,10 +26,14 @@ TEST(ReadoutFilter, BeginsWithWhatAnyCameraMayHave) {
 }
 
 TEST(ReadoutFilter, BeginsWithAnyTimeWhereRowsWereSeenToRoll) {
-  const ReadoutFilter filter(0);
+  ReadoutFilter filter(ReadoutFilter::kGlobalAfterSign);
   EXPECT_EQ(filter.estimate().time, 0);
   EXPECT_NEAR(stddevOf(filter), 0.02, 1e-3);
-  EXPECT_EQ(filter.globalProbability(), 0);
+  EXPECT_NEAR(filter.globalProbability(), ReadoutFilter::kGlobalAfterSign, 1e-9);
+  // Where it was ground that is no plane, a global shutter comes back.
+  for (int i = 0; i < 1200; ++i) filter.learn(effectOf(1e4, -filter.estimate().time), 0.05);
+  EXPECT_GT(filter.globalProbability(), 5 * ReadoutFilter::kGlobalAfterSign);
+  EXPECT_LT(stddevOf(filter), 0.003);
 }
 
 TEST(ReadoutFilter, FindsTheTimeAndKnowsItBetterAndBetter) {

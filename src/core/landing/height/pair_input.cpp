@@ -23,10 +23,14 @@ ApproachAngleResult::Motion turnOf(const ApproachAngleResult& approach, bool fus
 }  // namespace
 
 PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo,
-                     const ApproachAngleResult& given_approach, bool fuse_imu)
+                     const ApproachAngleResult& given_approach, bool fuse_imu, bool readout_given)
     : stereo(checked(rig, given_stereo)),
       approach(checked(given_approach)),
       turn(turnOf(approach, fuse_imu)) {
+  if (readout_given)
+    approach.readout = {};
+  else if (approach.readout.given())
+    approach.readout = ReadoutEstimate::global();
   carryPlane(approach.step, approach.readout, stereo);
   // The repeated image shows the runway from the previous place of the camera.
   if (repeated())

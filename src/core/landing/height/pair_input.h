@@ -10,9 +10,10 @@ namespace uav_landing {
 
 /// One pair as the parts of the landing estimate need it: the checked results of both earlier stages.
 struct PairInput {
-  /// fuse_imu: use the rotation of the inertial sensor when the images give none.
+  /// fuse_imu: use the rotation of the inertial sensor when the images give none. readout_given: whether the
+  /// parameters give a readout time; else that of the result counts, or a global shutter.
   PairInput(const StereoRig& rig, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-            bool fuse_imu);
+            bool fuse_imu, bool readout_given);
 
   StereoDepthResult stereo;
   ApproachAngleResult approach;

@@ -126,11 +126,15 @@ void MotionTracker::reset() {
   past_.clear();
   last_step_.reset();
   search_.reset();
-  forgetShake();
-  filter_.reset();
+  forgetRows();
   last_rate_stddev_ = 0;
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
+}
+
+void MotionTracker::forgetRows() {
+  step_shake_ = window_shake_ = {};
+  filter_.reset();
 }
 
 ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditions& conditions) const {

@@ -76,8 +76,9 @@ class MotionTracker {
   /// not later.
   Result repeat(double stamp) const;
   void reset();
-  /// Call it when a readout time begins to be estimated. What counted as shake so far may have been that.
-  void forgetShake() { step_shake_ = window_shake_ = {}; }
+  /// Call it when a readout time begins to be estimated. What counted as shake so far may have been that, and
+  /// angles so far do not claim its error.
+  void forgetRows();
   /// Corners that the last process() followed to the previous frame, including those that contradict the
   /// motion.
   const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }

@@ -173,7 +173,7 @@ std::vector<RowNode> MotionRows::rowNodes(const std::vector<double>& shares, con
     const double weight = outputs_[kRayWeight * padded_ + match];
     if (!(weight > 0)) continue;
     const double place = RowNode::kInReadout * shares[match] - first;
-    const auto above = static_cast<size_t>(place);
+    const size_t above = std::min(static_cast<size_t>(place), list.size() - 2);
     const std::array<double, 2> parts = {static_cast<double>(above) + 1 - place,
                                          place - static_cast<double>(above)};
     const std::array<RowNode*, 2> nodes = {&list[above], &list[above + 1]};

@@ -64,8 +64,8 @@ class MotionRows {
   /// linearised at the same state. The residuals are those after one more step. Call it after accumulate().
   SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
 
-  /// Sums for the nodes of a rotation over the rows, after one more step, from the first node with a match
-  /// beside it to the last one. shares: times of the matches as a share of the readout. later: as above, or
+  /// Sums for the nodes of a rotation over the rows, after one more step, from the one before the first match
+  /// to the one after the last. shares: times of the matches as a share of the readout. later: as above, or
   /// null when the readout time is no unknown. Call it after accumulate().
   std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                 const MotionRows* later, double seconds) const;

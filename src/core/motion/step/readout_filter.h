@@ -17,6 +17,10 @@ class ReadoutFilter {
   /// low value is safer, because too narrow a claim does more harm than too wide a one.
   static constexpr double kGlobalBeforehand = 0.2;
 
+  /// Probability of a global shutter after rows were seen to move on their own. Ground that is no plane can
+  /// look like that.
+  static constexpr double kGlobalAfterSign = 0.01;
+
   /// global_beforehand: probability of a global shutter before any measurement.
   explicit ReadoutFilter(double global_beforehand = kGlobalBeforehand)
       : global_beforehand_(global_beforehand) {}

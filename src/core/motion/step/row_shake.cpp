@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found. Where nothing is told of the rows, a sign
-// of a rolling shutter only makes claims wider for a while, so less is enough.
-constexpr double kLeastLikelihood = 100, kLeastUntold = 60;
+// Least logarithm of the likelihood ratio at which shake is found. While the shutter is taken as global it is
+// enough to begin with an estimate of the readout time, so it may be less.
+constexpr double kLeastLikelihood = 100, kLeastOfGlobal = 60;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
@@ -193,11 +193,11 @@ RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& mo
   const NodeSystem system(nodes);
   const double explained = squaresOfNodes(system), noise = noiseBeside(nodes, explained);
   ShakeMemory& memory = *watch.memory;
-  if (!watch.told && !showsSign(explained, noise, nodes.size())) {
+  if (!watch.rolling && !showsSign(explained, noise, nodes.size())) {
     memory.fade();
     return {};
   }
-  const Remainder left = remainderOf(system, motion, !watch.told, time);
+  const Remainder left = remainderOf(system, motion, !watch.rolling, time);
   const ShakeShapes::Roots& roots = shapes.of(static_cast<Eigen::Index>(nodes.size()));
   ShakeMemory::Likelihoods likelihoods = {};
   for (size_t i = 0; i < roots.size(); ++i) {
@@ -207,7 +207,7 @@ RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& mo
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > (watch.told ? kLeastLikelihood : kLeastUntold))) return {};
+  if (!(size.likelihood > (watch.rolling ? kLeastLikelihood : kLeastOfGlobal))) return {};
   return takenOut(system, motion.information, noise, size, forThreeAxes(roots[size.cycles]));
 }
 

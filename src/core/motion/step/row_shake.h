@@ -54,9 +54,9 @@ class ShakeMemory {
 struct ShakeWatch {
   const RowTimes* rows = nullptr;  ///< rows that vibration may turn; null: all are exposed at once
   ShakeMemory* memory = nullptr;
-  /// False when nothing is told of the rows. They are probably exposed at once, so most pairs show no sign of
+  /// False while the shutter is taken as global, as nothing is told of it. Then most pairs show no sign of
   /// shake, and the likelihoods are not worked out for them.
-  bool told = true;
+  bool rolling = true;
 };
 
 /// Shapes over the nodes that shake around one frequency can have. Shake is smooth over the nodes, so a few
@@ -105,8 +105,8 @@ struct TimeUnknown {
 
 /// Looks for shake in the nodes of one pair. Any part of the residuals that no rotation can explain counts as
 /// noise of the matches, even if they claim less. Shake is found only when it is far beyond that noise over
-/// this pair and the previous ones. Where nothing is told of the rows, a wrong normal must not be taken for
-/// shake, as a rig that has turned makes one. nodes: one after the other, without gaps. time: another
+/// this pair and the previous ones. While the shutter is taken as global, a wrong normal must not be taken
+/// for shake, as a rig that has turned makes one. nodes: one after the other, without gaps. time: another
 /// unknown, which must not be taken for shake either.
 RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& motion, const TimeUnknown& time,
                       const ShakeWatch& watch, ShakeShapes& shapes);

@@ -22,8 +22,8 @@ struct PlaneDrift {
 void carryToStamp(const StereoRig& rig, const PlaneDrift& drift, std::vector<DisparitySample>& samples);
 
 /// Derivative A of the fitted plane by the drift's rate, in seconds: dg = A d(rate). The plane was fitted to
-/// samples that carryToStamp() had corrected by that rate. agrees: 1 for samples on the plane. Zero for a
-/// global shutter.
+/// samples that carryToStamp() had corrected by that rate. agrees: 1 for samples on the plane. Zero
+/// without times.
 Eigen::Matrix3d planeByRate(const StereoRig& rig, const PlaneDrift& drift,
                             const std::vector<DisparitySample>& samples, const std::vector<char>& agrees);
 
