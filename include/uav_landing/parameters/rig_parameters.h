@@ -64,10 +64,11 @@ struct RigParameters {
         "one, of the image as the driver delivers it. 0: global shutter. Negative: the last row comes "
         "first. Longer than the time between images is refused. Not given: a global shutter, until rows are "
         "seen to move on their own (test row_motion). From then on it is estimated");
-    v.flag("estimate_readout_time", estimate_readout_time,
-           "estimates readout_time from the first pair on where it is not given, not only from where rows are "
-           "seen to move on their own. Angles and heights claim what is not known of it yet, and a pair takes "
-           "up to half more time");
+    v.flag(
+        "estimate_readout_time", estimate_readout_time,
+        "estimates readout_time from the first pair on where it is not given, not only from where rows are "
+        "seen to move on their own. Angles and heights claim what is not known of it yet, and a pair takes "
+        "up to half more time");
     v.number("stamp_row", stamp_row, -2.0, 2.0, "image heights",
              "row that is in the middle of its exposure at the stamp of an image: 0 the first one, 0.5 the "
              "middle one, 1 the last one. Where the stamp is the begin of a row's exposure, subtract half of "
