@@ -138,6 +138,26 @@ TEST(RollingShutter, ThatNobodyToldOfIsSeenByItsRowsAndThenEstimated) {
   EXPECT_LT(global.angle, 3);
 }
 
+TEST(RollingShutter, ThatWasSeenIsForgottenAtAReset) {
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  const RigModel model = makeRigModel(test::calibrationOf(rig), test::calibrationOf(rig, true)).value();
+  StereoDepthStage stereo(model, {});
+  ApproachAngleStage approach(model, {});
+  const auto readoutAt = [&](double stamp) {
+    const cv::Mat left = test::rollingImage(gustyPose, ground, rig, stamp, kReadout),
+                  right = test::rollingImage(gustyPose, ground, rig, stamp, kReadout, true);
+    return approach.process(stamp, left, right, stereo.process(stamp, left, right)).readout;
+  };
+  ReadoutEstimate last;
+  for (int i = 0; i < 32; ++i) last = readoutAt(i * kPeriod);
+  EXPECT_TRUE(last.known());
+  approach.reset();
+  const ReadoutEstimate first = readoutAt(32 * kPeriod);
+  EXPECT_FALSE(first.known());
+  EXPECT_FALSE(first.given());
+}
+
 TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const cv::Mat image = test::GroundRenderer(12).left(rig, test::movingPose(0));

@@ -48,7 +48,7 @@ Score fly(const std::string& scene, double seconds) {
 class SceneryYaw : public testing::TestWithParam<const char*> {};
 
 TEST_P(SceneryYaw, IsThatOfTheRunwayAndIsKnownMostly) {
-  const Score score = fly(GetParam(), 6);
+  const Score score = fly(GetParam(), 8);
   EXPECT_EQ(score.wrong, 0) << "off by up to " << score.worst << " degrees";
   EXPECT_GE(score.known, 0.8 * score.pairs);
 }

@@ -53,7 +53,7 @@ class OutputTest(SimulateApproachTest):
             with self.subTest(scene=scene.name):
                 self.assertIn(f"`{scene.name}`", listed)
                 config = yaml.safe_load(scene.read_text())
-                config.setdefault("path", {})["rate"] = 0.125
+                config.setdefault("path", {})["rate"] = 0.25
                 seldom = self.folder / scene.name
                 seldom.write_text(yaml.safe_dump(config))
                 dataset = self.folder / scene.stem

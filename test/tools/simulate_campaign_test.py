@@ -57,10 +57,10 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertLess(abs(float(with_imu["pitch_deg"]) - float(with_imu["pitch_true_deg"])), 0.04)
 
     def test_ground_bends_under_the_same_height(self):
-        options = ("--first", 1, "--count", 3, "--heights", 10, "--noise", 2)
+        options = ("--first", 1, "--count", 6, "--heights", 10, "--noise", 2)
         flat, bent = self.fly(*options), self.fly(*options, "--bend")
         heights = [(float(a["height_true_m"]), float(b["height_true_m"])) for a, b in zip(flat, bent)]
-        self.assertTrue(any(abs(a - b) > 1e-9 for a, b in heights), "none of three bends")
+        self.assertTrue(any(abs(a - b) > 1e-9 for a, b in heights), "none of six bends")
         for a, b in heights:
             self.assertAlmostEqual(a, b, delta=0.05)
         refused = run([PROGRAM, "approaches", "--csv", self.folder / "rows.csv", "--bend"])
@@ -68,7 +68,7 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertIn("--bend: for snippets only", refused.stderr)
 
     def test_scenery_shows_in_the_estimates_and_changes_no_truth(self):
-        options = ("--first", 1, "--count", 2, "--heights", 10, "--noise", 2)
+        options = ("--first", 1, "--count", 3, "--heights", 10, "--noise", 2)
         bare, with_scenery = self.fly(*options), self.fly(*options, "--scenery")
         for a, b in zip(bare, with_scenery):
             self.assertEqual([value for name, value in a.items() if "_true_" in name],

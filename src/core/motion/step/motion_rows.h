@@ -64,9 +64,9 @@ class MotionRows {
   /// linearised at the same state. The residuals are those after one more step. Call it after accumulate().
   SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
 
-  /// Sums for the nodes of a rotation over the rows, after one more step, from the one before the first match
-  /// to the one after the last. shares: times of the matches as a share of the readout. later: as above, or
-  /// null when the readout time is no unknown. Call it after accumulate().
+  /// Sums for the nodes of a rotation over the rows, after one more step. The first node is before the first
+  /// match, the last one after the last match. shares: times of the matches as a share of the readout.
+  /// later: as above, or null when the readout time is no unknown. Call it after accumulate().
   std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                 const MotionRows* later, double seconds) const;
 

@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found. While the shutter is taken as global it is
-// enough to begin with an estimate of the readout time, so it may be less.
+// Least logarithm of the likelihood ratio at which shake is found. While the shutter is taken as global, an
+// estimate of the readout time then begins. That costs less than an angle, so it may be less. Over flat
+// ground no global shutter came near it: the largest was 30, and mostly no pair has any sign.
 constexpr double kLeastLikelihood = 100, kLeastOfGlobal = 60;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;

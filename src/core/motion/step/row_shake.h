@@ -105,9 +105,9 @@ struct TimeUnknown {
 
 /// Looks for shake in the nodes of one pair. Any part of the residuals that no rotation can explain counts as
 /// noise of the matches, even if they claim less. Shake is found only when it is far beyond that noise over
-/// this pair and the previous ones. While the shutter is taken as global, a wrong normal must not be taken
-/// for shake, as a rig that has turned makes one. nodes: one after the other, without gaps. time: another
-/// unknown, which must not be taken for shake either.
+/// this pair and the previous ones. A rig that has turned makes the normal wrong, and that would look like
+/// shake. So the normal counts as unknown while the shutter is taken as global. nodes: one after the other,
+/// without gaps. time: another unknown, as it would look like shake, too.
 RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& motion, const TimeUnknown& time,
                       const ShakeWatch& watch, ShakeShapes& shapes);
 
