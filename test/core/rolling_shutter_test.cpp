@@ -56,8 +56,8 @@ TEST(RollingShutter, LeavesTheEstimatesAsTheyAreWhenItsReadoutTimeIsKnown) {
       << "the shutter must matter";
 }
 
-/// Largest errors over their claimed standard deviations, of a chain that is not told of the shutter.
-struct UntoldRatios {
+/// Largest errors over their claimed standard deviations.
+struct Ratios {
   double angle = 0, height = 0, time = 0;
   double found = 0, time_stddev = 0;  // s, of the last pair
   int count = 0, shaken = 0;          // pairs; those of which row_motion fails
@@ -73,15 +73,21 @@ test::Pose gustyPose(double t) {
   return pose;
 }
 
-UntoldRatios untoldRatios(double readout, bool asked = true, test::Pose (*poseAt)(double) = steadyPose) {
-  constexpr int kPairs = 32, kFirst = 6;
+/// What the chain is told of the shutter.
+enum class Told { kNothing, kToEstimate, kAll };
+
+Ratios ratiosOf(double readout, Told told = Told::kToEstimate, test::Pose (*poseAt)(double) = steadyPose) {
+  constexpr int kPairs = 32;
+  // The first half second tells how the gusts are.
+  const int first = told == Told::kAll ? 10 : 6;
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const test::GroundRenderer ground(12);
   Parameters parameters;
-  parameters.rig.estimate_readout_time = asked;
+  parameters.rig.estimate_readout_time = told == Told::kToEstimate;
+  if (told == Told::kAll) parameters.rig.readout_time = readout;
   Pipeline pipeline =
       Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
-  UntoldRatios ratios;
+  Ratios ratios;
   for (int i = 0; i < kPairs; ++i) {
     const double stamp = i * kPeriod;
     const Pipeline::Output& output =
@@ -90,8 +96,8 @@ UntoldRatios untoldRatios(double readout, bool asked = true, test::Pose (*poseAt
     const ReadoutEstimate& found = output.approach.readout;
     ratios.found = found.time;
     ratios.time_stddev = std::sqrt(found.variance);
-    if (i < kFirst || output.approach.step.failure || !std::isfinite(output.landing.raw_height)) continue;
-    if (readout != 0 && !found.known()) continue;  // nothing has been seen of it yet
+    if (i < first || output.approach.step.failure || !std::isfinite(output.landing.raw_height)) continue;
+    if (readout != 0 && told != Told::kAll && !found.known()) continue;  // nothing has been seen of it yet
     const test::Pose now = poseAt(stamp);
     const auto take = [](double error, double variance, double& largest) {
       largest = std::max(largest, std::abs(error) / std::sqrt(variance));
@@ -99,7 +105,7 @@ UntoldRatios untoldRatios(double readout, bool asked = true, test::Pose (*poseAt
     const ApproachAngleResult::Motion& step = output.approach.step;
     take(step.angle - test::Movement(poseAt(stamp - kPeriod), now).angle, step.angle_variance, ratios.angle);
     take(output.landing.raw_height - now.height(), output.landing.raw_height_variance, ratios.height);
-    take(found.time - readout, found.variance, ratios.time);
+    if (found.known()) take(found.time - readout, found.variance, ratios.time);
     ++ratios.count;
     for (const TestResult& test : output.landing.tests)
       ratios.shaken += test.name == "row_motion" && test.failed();
@@ -109,7 +115,7 @@ UntoldRatios untoldRatios(double readout, bool asked = true, test::Pose (*poseAt
 
 TEST(RollingShutter, ThatNobodyToldOfIsClaimedAndFound) {
   for (const double readout : {0.0, kReadout, -0.02}) {
-    const UntoldRatios ratios = untoldRatios(readout);
+    const Ratios ratios = ratiosOf(readout);
     ASSERT_GT(ratios.count, 5);
     EXPECT_LT(ratios.angle, 3) << readout;
     EXPECT_LT(ratios.height, 3) << readout;
@@ -118,12 +124,12 @@ TEST(RollingShutter, ThatNobodyToldOfIsClaimedAndFound) {
     EXPECT_LE(std::abs(ratios.found), std::abs(readout)) << readout;
     EXPECT_GT(ratios.time_stddev, 1e-3) << readout;
   }
-  EXPECT_GT(untoldRatios(kReadout).found, 0.2 * kReadout);
+  EXPECT_GT(ratiosOf(kReadout).found, 0.2 * kReadout);
 }
 
 TEST(RollingShutter, ThatNobodyToldOfIsSeenByItsRowsAndThenEstimated) {
   for (const double readout : {kReadout, -kReadout}) {
-    const UntoldRatios ratios = untoldRatios(readout, false, gustyPose);
+    const Ratios ratios = ratiosOf(readout, Told::kNothing, gustyPose);
     ASSERT_GT(ratios.count, 5);
     EXPECT_LT(ratios.height, 3) << readout;
     EXPECT_LT(ratios.time, 3) << readout;
@@ -132,10 +138,20 @@ TEST(RollingShutter, ThatNobodyToldOfIsSeenByItsRowsAndThenEstimated) {
     EXPECT_GT(ratios.time_stddev, 1e-3) << readout;
     EXPECT_EQ(ratios.shaken, 0) << "only the pairs before the estimate";
   }
-  const UntoldRatios global = untoldRatios(0, false, gustyPose);
+  const Ratios global = ratiosOf(0, Told::kNothing, gustyPose);
   EXPECT_EQ(global.found, 0);
   EXPECT_EQ(global.time_stddev, 0) << "taken as global: nothing speaks against it";
   EXPECT_LT(global.angle, 3);
+}
+
+TEST(RollingShutter, IsClaimedInGustsWhenItsReadoutTimeIsKnown) {
+  for (const double readout : {kReadout, -kReadout}) {
+    const Ratios ratios = ratiosOf(readout, Told::kAll, gustyPose);
+    ASSERT_GT(ratios.count, 20);
+    EXPECT_LT(ratios.angle, 3) << readout;
+    EXPECT_LT(ratios.height, 3) << readout;
+    EXPECT_EQ(ratios.shaken, 0) << readout;
+  }
 }
 
 TEST(RollingShutter, ThatWasSeenIsForgottenAtAReset) {

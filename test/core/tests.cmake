@@ -146,6 +146,8 @@ uav_landing_add_gtest(vertical_disparity_test test/core/stereo/rows/vertical_dis
 
 # motion
 uav_landing_add_gtest(approach_angle_test test/core/motion/approach_angle_test.cpp)
+uav_landing_add_gtest(turn_history_test test/core/motion/turn_history_test.cpp)
+uav_landing_add_gtest(row_sums_test test/core/motion/row_sums_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(row_shake_test test/core/motion/row_shake_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(readout_filter_test test/core/motion/readout_filter_test.cpp)
 uav_landing_add_gtest(readout_shift_test test/core/motion/readout_shift_test.cpp SOURCES test/support/ground_renderer.cpp)

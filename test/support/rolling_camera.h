@@ -20,15 +20,20 @@ inline Pose movingPose(double t) {
   return pose;
 }
 
-/// The motion at a time by the difference of poses around it.
-inline RowMotion motionAt(double t) {
+/// The motion at a time by the difference of poses around it; its acceleration is left at 0. poseAt: of a
+/// time.
+template <class PoseAt>
+RowMotion motionAt(double t, const PoseAt& poseAt) {
   constexpr double kHalf = 1e-4;
-  const Pose before = movingPose(t - kHalf), behind = movingPose(t + kHalf), now = movingPose(t);
+  const Pose before = poseAt(t - kHalf), behind = poseAt(t + kHalf), now = poseAt(t);
   const Movement movement(before, behind);
   const Eigen::AngleAxisd turn(movement.R);
   return {turn.angle() * turn.axis() / (2 * kHalf),
           now.seen(behind.position - before.position) / (2 * kHalf) / now.height()};
 }
+
+/// Of the camera that moves steadily.
+inline RowMotion motionAt(double t) { return motionAt(t, movingPose); }
 
 /// The calibration of a rectified camera without lens errors.
 inline CameraCalibration calibrationOf(const StereoRig& rig, bool right = false) {

@@ -42,13 +42,13 @@ Eigen::Vector2d StampMap::project(const Eigen::Vector3d& point) const {
 
 // Place at the stamp of a ray that is seen so many seconds after it.
 Eigen::Vector2d StampMap::carried(const Eigen::Vector3d& r, double seconds, double inverse_depth) const {
-  return project(turned(-seconds * motion_.w, r) + inverse_depth * seconds * motion_.v);
+  return project(turned(-motion_.turn(seconds), r) + inverse_depth * seconds * motion_.v);
 }
 
 Eigen::Vector2d StampMap::toStamp(const Eigen::Vector2d& pixel) const {
   if (changesNothing()) return pixel;
   const double seconds = times_->at(pixel.x(), pixel.y());
-  const Eigen::Vector3d r = ray(pixel), n = turned(seconds * motion_.w, normal_);
+  const Eigen::Vector3d r = ray(pixel), n = turned(motion_.turn(seconds), normal_);
   const double inverse_depth = n.dot(r) / (1 - seconds * normal_.dot(motion_.v));
   return carried(r, seconds, std::max(inverse_depth, 0.0));
 }
@@ -68,7 +68,7 @@ Eigen::Vector2d StampMap::toRow(const Eigen::Vector2d& at_stamp, double inverse_
   Eigen::Vector2d pixel = at_stamp;
   for (int step = 0; step < kSteps; ++step) {
     const double seconds = times_->at(pixel.x(), pixel.y());
-    pixel = project(turned(seconds * motion_.w, r - inverse_depth * seconds * motion_.v));
+    pixel = project(turned(motion_.turn(seconds), r - inverse_depth * seconds * motion_.v));
   }
   return pixel;
 }
@@ -80,11 +80,11 @@ double StampMap::timeOf(const Eigen::Vector3d& point) const {
 }
 
 Eigen::Vector3d StampMap::pointAfter(double seconds, const Eigen::Vector3d& point) const {
-  return turned(seconds * motion_.w, point - seconds * motion_.v);
+  return turned(motion_.turn(seconds), point - seconds * motion_.v);
 }
 
 Eigen::Vector3d StampMap::directionAfter(double seconds, const Eigen::Vector3d& direction) const {
-  return turned(seconds * motion_.w, direction);
+  return turned(motion_.turn(seconds), direction);
 }
 
 }  // namespace uav_landing

@@ -9,10 +9,14 @@
 namespace uav_landing {
 
 /// Motion of the camera at the stamp of an image, in its own frame at that time. A scene at rest is at x(t) =
-/// exp(w t) (x - v t). Lengths are in units of the height at the stamp.
+/// exp(w t + a t^2 / 2) (x - v t). Lengths are in units of the height at the stamp.
 struct RowMotion {
   Eigen::Vector3d w = Eigen::Vector3d::Zero();  ///< rad/s
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< 1/s
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< rad/s^2
+
+  /// Rotation vector from the stamp to some seconds after it.
+  Eigen::Vector3d turn(double seconds) const { return seconds * (w + seconds / 2 * a); }
 };
 
 /// Rate of a plane vector, 1/m/s.

@@ -10,13 +10,14 @@ namespace {
 constexpr double kReadout = 0.03;  // s
 
 struct Scene {
+  test::Pose (*poseAt)(double) = test::movingPose;
   StereoRig rig = test::makeRig(640, 480, 1);
   RowTimes times{test::calibrationOf(rig), {kReadout, 0.5}};
-  test::Pose now = test::movingPose(0);
-  StampMap map{rig.K(), times, test::motionAt(0), now.down()};
+  test::Pose now = poseAt(0);
+  StampMap map{rig.K(), times, test::motionAt(0, poseAt), now.down()};
 
   Eigen::Vector2d at(double t, const Eigen::Vector3d& world) const {
-    const test::Pose pose = test::movingPose(t);
+    const test::Pose pose = poseAt(t);
     return rig.project(pose.seen(world - pose.position));
   }
   /// Where a rolling shutter sees a point of the world: the row that has the time at which it is there.
@@ -38,7 +39,9 @@ TEST(StampMap, LeadsGroundFromItsRowToTheStampAndBack) {
       const Eigen::Vector2d truth(u, v), seen = scene.seen(scene.onGround(u, v));
       EXPECT_LT((scene.map.toStamp(seen) - truth).norm(), 0.02) << u << ' ' << v;
       EXPECT_LT((scene.map.toRow(truth) - seen).norm(), 0.02) << u << ' ' << v;
-      if (v > 400) EXPECT_GT((seen - truth).norm(), 5) << "the shutter must matter";
+      if (v > 400) {
+        EXPECT_GT((seen - truth).norm(), 5) << "the shutter must matter";
+      }
     }
 }
 
@@ -65,6 +68,32 @@ TEST(StampMap, TurnsWhatIsAboveTheHorizon) {
       scene.now.position + 1e7 * (scene.now.worldFromOptical() * scene.rig.ray(pixel.x(), pixel.y()));
   EXPECT_LT((scene.map.toStamp(scene.seen(far)) - pixel).norm(), 0.01);
   EXPECT_LT((scene.map.toRow(pixel) - scene.seen(far)).norm(), 0.01);
+}
+
+/// The camera in a gust that rolls it faster and faster.
+test::Pose gustPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.roll += 100 * test::kDegree * t * t;
+  return pose;
+}
+
+TEST(StampMap, FollowsATurnThatGetsFaster) {
+  Scene scene;
+  scene.poseAt = gustPose;
+  RowMotion motion = test::motionAt(0, gustPose);
+  const StampMap even(scene.rig.K(), scene.times, motion, scene.now.down());
+  constexpr double kApart = 1e-3;
+  motion.a = (test::motionAt(kApart, gustPose).w - test::motionAt(-kApart, gustPose).w) / (2 * kApart);
+  const StampMap map(scene.rig.K(), scene.times, motion, scene.now.down());
+  for (const double u : {30.0, 610.0})
+    for (const double v : {250.0, 470.0}) {
+      const Eigen::Vector2d truth(u, v), seen = scene.seen(scene.onGround(u, v));
+      EXPECT_LT((map.toStamp(seen) - truth).norm(), 0.02) << u << ' ' << v;
+      EXPECT_LT((map.toRow(truth) - seen).norm(), 0.02) << u << ' ' << v;
+      if (v > 400) {
+        EXPECT_GT((even.toStamp(seen) - truth).norm(), 0.05) << "the gust must matter";
+      }
+    }
 }
 
 TEST(StampMap, ChangesNothingWithoutRowTimes) {

@@ -30,6 +30,7 @@ struct Flight {
   StepMatching matching{rig, cv::Mat(rig.size, CV_8UC1, cv::Scalar(255)), parameters};
   FirstStepSearch search{false};
   MotionSearchMemory memory;
+  TurnHistory turns;
 
   Pose at(double t) const {
     Pose pose;
@@ -57,6 +58,7 @@ struct Flight {
                                      period,
                                      corners,
                                      memory,
+                                     turns,
                                      {n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose())},
                                      rotation,
                                      false,

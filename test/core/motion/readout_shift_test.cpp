@@ -6,6 +6,7 @@
 #include <random>
 
 #include "motion/step/ego_motion.h"
+#include "motion/step/turn_history.h"
 #include "support/motion_matches.h"
 #include "support/rolling_camera.h"
 
@@ -61,10 +62,12 @@ struct RollingStep {
 
   std::vector<TemporalMatch> shifted(double readout, double given) const {
     std::vector<TemporalMatch> all = matches(readout);
-    const RowMotion rows = evenMotion(motion, kPeriod);
-    const RowMotion rows_then{rows.w, motion.R.transpose() * rows.v / (1 + truth.n.dot(truth.t))};
-    shiftByReadout(motionRig(), {motion, truth.n, {&unit, rows, rows_then}}, given, all);
+    shiftByReadout(motionRig(), overGround(ends()), given, all);
     return all;
+  }
+  StepEnds ends() const { return TurnHistory().ends(motion, kPeriod, 1 + truth.n.dot(truth.t)); }
+  MotionOverGround overGround(const StepEnds& ends) const {
+    return {motion, truth.n, {&unit, ends.now, ends.then}};
   }
 
   Expected<MotionEstimate> estimate(double readout, double given) const {
@@ -85,11 +88,28 @@ TEST(ReadoutShift, CarriesMatchesToTheSamePlaceAgain) {
   const RollingStep step;
   std::vector<TemporalMatch> all = step.shifted(kReadout, kReadout);
   const std::vector<TemporalMatch> once = all;
-  const RowMotion rows = evenMotion(step.motion, kPeriod);
-  const RowMotion rows_then{rows.w,
-                            step.motion.R.transpose() * rows.v / (1 + step.truth.n.dot(step.truth.t))};
-  shiftByReadout(motionRig(), {step.motion, step.truth.n, {&step.unit, rows, rows_then}}, kReadout, all);
+  shiftByReadout(motionRig(), step.overGround(step.ends()), kReadout, all);
   for (size_t i = 0; i < all.size(); ++i) EXPECT_LT((all[i].then - once[i].then).norm(), 1e-6) << i;
+}
+
+TEST(ReadoutShift, HasTheTurnThatGetsFaster) {
+  const RollingStep step;
+  StepEnds ends = step.ends();
+  ends.now.a = {3, -2, 9};
+  const RowTimes rows(test::calibrationOf(motionRig()), {kReadout, 0.5});
+  const StampMap now(motionRig().K(), rows, ends.now, step.truth.n),
+      then(motionRig().K(), rows, ends.then, step.motion.R.transpose() * step.truth.n);
+  const std::vector<TemporalMatch> seen = step.matches(kReadout), even = step.shifted(kReadout, kReadout);
+  std::vector<TemporalMatch> carried = seen;
+  shiftByReadout(motionRig(), step.overGround(ends), kReadout, carried);
+  double farthest = 0;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    const Eigen::Vector2d wanted =
+        then.toStamp(seen[i].then) - seen[i].then - seen[i].warp * (now.toStamp(seen[i].now) - seen[i].now);
+    EXPECT_LT((carried[i].then - seen[i].then - wanted).norm(), 0.005) << i;
+    farthest = std::max(farthest, (carried[i].then - even[i].then).norm());
+  }
+  EXPECT_GT(farthest, 0.02) << "the acceleration must matter";
 }
 
 TEST(ReadoutShift, TellsWhatTheTimeDoesToTheMotion) {

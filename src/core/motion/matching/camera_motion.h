@@ -28,11 +28,6 @@ inline CameraMotion carriedOn(const CameraMotion& motion, double times) {
   return {Eigen::AngleAxisd(turn.angle() * times, turn.axis()).toRotationMatrix(), motion.t * times};
 }
 
-/// Velocities of the camera now, if it moved evenly over the duration (s) of this motion.
-inline RowMotion evenMotion(const CameraMotion& motion, double duration) {
-  return {rotationVector(motion.R) / duration, motion.t / duration};
-}
-
 /// Rotation from then to now as an inertial sensor measured it, independent of the images.
 struct RotationPrior {
   Eigen::Matrix3d R;

@@ -128,6 +128,7 @@ void MotionTracker::reset() {
   search_.reset();
   forgetRows();
   last_rate_stddev_ = 0;
+  turns_.reset();
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
@@ -144,7 +145,13 @@ ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditio
 
 ShakeWatch MotionTracker::watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const {
   if (!mayRoll()) return {};
-  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known()};
+  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known(),
+          readout.given()};
+}
+
+Eigen::Matrix3d MotionTracker::turnDoubt(double duration, const ReadoutEstimate& readout) const {
+  const double time = times_.atOnce() ? readout.time : times_.readoutTime();
+  return time * time * turns_.doubt(duration);
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -162,7 +169,9 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
 
 std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
   if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kRarePairs)) return std::nullopt;
-  return past_.back().motion;
+  std::optional<RowMotion> motion = past_.back().motion;
+  if (motion) motion->w += (stamp - past_.back().stamp) * motion->a;
+  return motion;
 }
 
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
@@ -210,6 +219,7 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         duration,
                         seen.corners,
                         memory_,
+                        turns_,
                         seen.normal,
                         rotation,
                         regular,
@@ -217,7 +227,7 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         &times_,
                         watchOf(step_shake_, conditions.readout),
                         doubtOf(seen, conditions),
-                        past_.back().motion};
+                        turnDoubt(duration, conditions.readout)};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -273,7 +283,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     // Lengths are converted from units of the previous height to units of the height now.
     const double unit = 1 + seen.normal.vector().dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    const RowMotion motion = evenMotion(step, result.step.duration);
+    const RowMotion motion = turns_.ends(step, result.step.duration, unit).now;
     const RowMotion motion_then = then.motion.value_or(motion);
     memory_.matching.spare = std::move(window_matches_);
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
@@ -282,8 +292,11 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     const ReadoutDoubt doubt = doubtOf(seen, conditions);
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
-    const MotionPrior prior{
-        predicted, seen.normal, nullptr, {watchOf(window_shake_, conditions.readout), doubt.normal_by_time}};
+    const MotionPrior prior{predicted,
+                            seen.normal,
+                            nullptr,
+                            {watchOf(window_shake_, conditions.readout), doubt.normal_by_time,
+                             turnDoubt(result.step.duration, conditions.readout)}};
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
@@ -362,7 +375,16 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
     }
   }
   now.motion.reset();
-  if (result.step_estimate) now.motion = evenMotion(result.step_estimate->motion, result.step.duration);
+  if (result.step_estimate) {
+    const CameraMotion& step = result.step_estimate->motion;
+    const StepEnds ends =
+        turns_.ends(step, result.step.duration, 1 + result.step_estimate->normal.dot(step.t));
+    past_.back().motion = ends.then;
+    now.motion = ends.now;
+    turns_.add(step, result.step.duration);
+  } else {
+    turns_.reset();
+  }
   last_window_ = result.window;
   last_step_ = result.unproven;
   if (result.step_estimate) last_step_ = result.step_estimate->motion;

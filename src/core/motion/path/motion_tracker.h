@@ -65,8 +65,8 @@ class MotionTracker {
                  const StepConditions& conditions = {});
   /// Whether there is an earlier image but no motion up to it, so that the next step has no prediction.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
-  /// Velocities of the camera at the last stamp. Nothing when they are not known or too old for this stamp
-  /// (s).
+  /// Velocities of the camera at this stamp (s), as the last step lets expect them. Nothing when that is not
+  /// known or too old.
   std::optional<RowMotion> lastMotion(double stamp) const;
   /// Keeps the image for the next step when no motion can be estimated to it.
   void skip(double stamp, const cv::Mat& left);
@@ -94,6 +94,8 @@ class MotionTracker {
   ReadoutDoubt doubtOf(const GroundInView& seen, const StepConditions& conditions) const;
   bool mayRoll() const { return !times_.atOnce() || !unit_times_.atOnce(); }
   ShakeWatch watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const;
+  /// Covariance of a turn over the readout that was not expected in a step, rad^2.
+  Eigen::Matrix3d turnDoubt(double duration, const ReadoutEstimate& readout) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
                     Result& result);
@@ -119,6 +121,7 @@ class MotionTracker {
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // of last_step_, s
   double last_sink_ = 0;      // n.t of last_step_, in heights at its end
+  TurnHistory turns_;
   ShakeMemory step_shake_, window_shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;

@@ -242,13 +242,9 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                       {rows, found->linearised, found->step,
                        motionUnknown(information, given, given.pull(state)), found->factor},
                       prior.rows, memory);
-  std::optional<Matrix9d> without_shake;
-  if (beside.shake.found()) {
-    without_shake = information.ldlt().solve(Matrix9d::Identity());
-    information = beside.shake.information;
-    state = state.apply(beside.shake.step);
-    found->step += beside.shake.step;
-  }
+  information = beside.information;
+  if (!beside.step.isZero(0)) state = state.apply(beside.step);
+  found->step += beside.step;
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
     return tl::make_unexpected(
@@ -261,7 +257,10 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
-  if (without_shake) result.of_shake = turn * (covariance - *without_shake) * turn.transpose();
+  if (beside.shake.found()) {
+    const Matrix9d without_shake = beside.without_shake.ldlt().solve(Matrix9d::Identity());
+    result.of_shake = turn * (covariance - without_shake) * turn.transpose();
+  }
   const Vector9d& with_time = beside.by_time.with_motion;
   if (beside.has_time) {
     Vector9d moved = with_time;

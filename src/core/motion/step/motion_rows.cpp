@@ -169,6 +169,8 @@ std::vector<RowNode> MotionRows::rowNodes(const std::vector<double>& shares, con
   const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
   const int first = static_cast<int>(std::floor(RowNode::kInReadout * *least));
   std::vector<RowNode> list(static_cast<int>(std::floor(RowNode::kInReadout * *most)) - first + 2);
+  for (size_t i = 0; i < list.size(); ++i)
+    list[i].share = (first + static_cast<double>(i)) / RowNode::kInReadout;
   for (size_t match = 0; match < count_; ++match) {
     const double weight = outputs_[kRayWeight * padded_ + match];
     if (!(weight > 0)) continue;

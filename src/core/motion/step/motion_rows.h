@@ -7,7 +7,7 @@
 #include "kernels/samples/seen_rays.h"
 #include "motion/matching/temporal_match.h"
 #include "motion/step/motion_state.h"
-#include "motion/step/row_shake.h"
+#include "motion/step/row_node.h"
 #include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
@@ -82,14 +82,6 @@ class MotionRows {
   size_t count_ = 0, padded_ = 0;
   std::vector<double> inputs_, outputs_;  // columns of padded_ values, see seen_rays.h
   std::vector<double> ratios_;
-};
-
-/// Working memory of a fit: all matches, and a second problem for the three drawn ones or for another readout
-/// time.
-struct MotionMemory {
-  MotionRows all, drawn;
-  std::vector<TemporalMatch> shifted;
-  ShakeShapes shapes;
 };
 
 }  // namespace uav_landing

@@ -6,8 +6,10 @@ namespace {
 constexpr double kApart = 1e-3;  // s, readout time for the difference quotients
 
 // With a readout of 1 s, a camera that moves kApart times as fast has the same shifts as one with a readout
-// of kApart at full speed.
-RowMotion slowed(const RowMotion& motion) { return {kApart * motion.w, kApart * motion.v}; }
+// of kApart at full speed. What its acceleration adds is in proportion to the square of the readout time.
+RowMotion slowed(const RowMotion& motion, double time) {
+  return {kApart * motion.w, kApart * motion.v, kApart * time * motion.a};
+}
 
 }  // namespace
 
@@ -15,8 +17,8 @@ void shiftByReadout(const StereoRig& rig, const MotionOverGround& over_ground, d
                     std::vector<TemporalMatch>& matches) {
   const auto& [motion, normal, unit] = over_ground;
   if (unit.times == nullptr || unit.times->atOnce()) return;
-  const StampMap now(rig.K(), *unit.times, slowed(unit.now), normal);
-  const StampMap then(rig.K(), *unit.times, slowed(unit.then), motion.R.transpose() * normal);
+  const StampMap now(rig.K(), *unit.times, slowed(unit.now, time), normal);
+  const StampMap then(rig.K(), *unit.times, slowed(unit.then, time), motion.R.transpose() * normal);
   const double height_then = 1 + normal.dot(motion.t);
   for (TemporalMatch& match : matches) {
     match.then -= time * match.by_readout;

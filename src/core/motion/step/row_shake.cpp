@@ -10,36 +10,13 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found. While the shutter is taken as global, an
-// estimate of the readout time then begins. That costs less than an angle, so it may be less. Over flat
-// ground no global shutter came near it: the largest was 30, and mostly no pair has any sign.
-constexpr double kLeastLikelihood = 100, kLeastOfGlobal = 60;
+// Least logarithm of the likelihood ratio at which shake is found, and the same where nothing is told of the
+// shutter. What looks like shake then mostly begins an estimate of the readout time. That costs less than an
+// angle, so it may be less. Over flat ground no global shutter came near it: the largest was 30, and mostly
+// no pair has any sign.
+constexpr double kLeastLikelihood = 100, kLeastUntold = 60;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
-
-/// The nodes as one linear system with three unknowns each.
-struct NodeSystem {
-  Eigen::MatrixXd rotation, with_motion;
-  Eigen::VectorXd score, with_time;
-
-  explicit NodeSystem(const std::vector<RowNode>& nodes) {
-    const auto n = static_cast<Eigen::Index>(nodes.size());
-    rotation.setZero(3 * n, 3 * n);
-    with_motion.resize(3 * n, 9);
-    score.resize(3 * n);
-    with_time.resize(3 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      rotation.block<3, 3>(3 * i, 3 * i) = nodes[i].rotation;
-      if (i + 1 < n) {
-        rotation.block<3, 3>(3 * i, 3 * i + 3) = nodes[i].with_next;
-        rotation.block<3, 3>(3 * i + 3, 3 * i) = nodes[i].with_next;
-      }
-      with_motion.middleRows<3>(3 * i) = nodes[i].with_motion;
-      score.segment<3>(3 * i) = nodes[i].score;
-      with_time.segment<3>(3 * i) = nodes[i].with_time;
-    }
-  }
-};
 
 // Root L of the covariance L L' of shake of unit variance around one frequency, for one axis.
 Eigen::MatrixXd shapesOf(Eigen::Index nodes, double cycles) {
@@ -67,29 +44,25 @@ Eigen::MatrixXd forThreeAxes(const Eigen::MatrixXd& root) {
 }
 
 // Part of the weighted sum of squared residuals that rotations of the nodes explain.
-double squaresOfNodes(const NodeSystem& system) {
+double squaresOfNodes(const RowSums& sums) {
   constexpr double kAnything = 1;  // rad
-  const Eigen::Index n = system.score.size();
-  const Eigen::MatrixXd some = system.rotation + Eigen::MatrixXd::Identity(n, n) / (kAnything * kAnything);
-  return system.score.dot(some.ldlt().solve(system.score));
+  const Eigen::Index n = sums.score.size();
+  const Eigen::MatrixXd some = sums.rotation + Eigen::MatrixXd::Identity(n, n) / (kAnything * kAnything);
+  return sums.score.dot(some.ldlt().solve(sums.score));
 }
 
 // Factor by which the matches' variances are larger than they claim, from the residuals that no shake
 // explains.
-double noiseBeside(const std::vector<RowNode>& nodes, double explained) {
-  double squares = 0, count = 0;
-  for (const RowNode& node : nodes) {
-    squares += node.squares;
-    count += 2 * node.count;
-  }
-  const auto unknowns = static_cast<double>(3 * nodes.size());
-  return count > unknowns ? std::max(1.0, (squares - explained) / (count - unknowns)) : 1;
+double noiseBeside(const RowSums& sums, double explained) {
+  const double count = 2 * sums.count;
+  const auto unknowns = static_cast<double>(sums.score.size());
+  return count > unknowns ? std::max(1.0, (sums.squares - explained) / (count - unknowns)) : 1;
 }
 
 // Whether rotations of the nodes explain more than noise lets them, by their chi-square.
-bool showsSign(double explained, double noise, size_t nodes) {
+bool showsSign(const RowSums& sums, double explained, double noise) {
   constexpr double kSign = 2;  // sigma
-  const auto unknowns = static_cast<double>(3 * nodes);
+  const auto unknowns = static_cast<double>(sums.score.size());
   return explained / noise > unknowns + kSign * std::sqrt(2 * unknowns);
 }
 
@@ -117,49 +90,25 @@ struct Remainder {
   Eigen::VectorXd score;
 };
 
-Remainder remainderOf(const NodeSystem& system, const MotionUnknown& motion, bool any_normal,
-                      const TimeUnknown& time) {
-  const bool timed = time.information > 0;
+Remainder remainderOf(const RowSums& sums, bool any_normal) {
+  constexpr double kAnyReadout = 0.02;  // s
   Eigen::Matrix<double, 10, 10> all = Eigen::Matrix<double, 10, 10>::Identity();
-  all.topLeftCorner<9, 9>() = any_normal ? motion.information_with_any_normal : motion.information;
-  Eigen::MatrixXd with_all = Eigen::MatrixXd::Zero(system.score.size(), 10);
-  with_all.leftCols<9>() = system.with_motion;
+  all.topLeftCorner<9, 9>() = any_normal ? sums.motion.information_with_any_normal : sums.motion.information;
+  Eigen::MatrixXd with_all = Eigen::MatrixXd::Zero(sums.score.size(), 10);
+  with_all.leftCols<9>() = sums.with_motion;
   Eigen::Matrix<double, 10, 1> right = Eigen::Matrix<double, 10, 1>::Zero();
-  if (any_normal) right.head<9>() = motion.right_with_any_normal;
-  if (timed) {
+  if (any_normal) right.head<9>() = sums.motion.right_with_any_normal;
+  if (sums.by_time.information > 0) {
     // Residuals grow with the readout time, so its terms have the opposite sign.
-    all(9, 9) = time.information;
-    all.topRightCorner<9, 1>() = -time.with_motion;
-    all.bottomLeftCorner<1, 9>() = -time.with_motion.transpose();
-    with_all.col(9) = -system.with_time;
-    right[9] = -time.right;
+    all(9, 9) = sums.by_time.information + 1 / (kAnyReadout * kAnyReadout);
+    all.topRightCorner<9, 1>() = -sums.by_time.with_motion;
+    all.bottomLeftCorner<1, 9>() = -sums.by_time.with_motion.transpose();
+    with_all.col(9) = -sums.with_time;
+    right[9] = -sums.by_time.right;
   }
   const Eigen::LDLT<Eigen::Matrix<double, 10, 10>> solver(all);
-  return {system.rotation - with_all * solver.solve(with_all.transpose()),
-          system.score - with_all * solver.solve(right)};
-}
-
-// Eliminates the shake. With K = L L', (N + K^-1)^-1 is L (1 + L' N L)^-1 L'. unit_root: L of unit variance.
-RowShake takenOut(const NodeSystem& system, const Matrix9d& information, double noise,
-                  const ShakeMemory::Size& size, const Eigen::MatrixXd& unit_root) {
-  // The size is the mean of three axes, but one axis may have all of it.
-  const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * unit_root;
-  const Eigen::Index n = root.cols();
-  const Eigen::LDLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
-                                           root.transpose() * system.rotation * root / noise);
-  const auto hidden = [&](const Eigen::MatrixXd& right) -> Eigen::MatrixXd {
-    return root * inner.solve(root.transpose() * right) / noise;
-  };
-  const Eigen::MatrixXd of_motion = hidden(system.with_motion);
-  const Eigen::VectorXd of_score = hidden(system.score), of_time = hidden(system.with_time);
-  RowShake shake;
-  shake.variance = size.stddev * size.stddev;
-  shake.information = information - system.with_motion.transpose() * of_motion;
-  shake.step = -shake.information.ldlt().solve(system.with_motion.transpose() * of_score);
-  shake.time_with_motion = system.with_motion.transpose() * of_time;
-  shake.time_information = system.with_time.dot(of_time);
-  shake.time_right = system.with_time.dot(of_score) - shake.time_with_motion.dot(shake.step);
-  return shake;
+  return {sums.rotation - with_all * solver.solve(with_all.transpose()),
+          sums.score - with_all * solver.solve(right)};
 }
 
 }  // namespace
@@ -188,18 +137,17 @@ const ShakeShapes::Roots& ShakeShapes::of(Eigen::Index nodes) {
   return roots_;
 }
 
-RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& motion, const TimeUnknown& time,
-                      const ShakeWatch& watch, ShakeShapes& shapes) {
-  if (static_cast<int>(nodes.size()) < kFewestNodes) return {};
-  const NodeSystem system(nodes);
-  const double explained = squaresOfNodes(system), noise = noiseBeside(nodes, explained);
+RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sums) {
+  const Eigen::Index nodes = sums.score.size() / 3;
+  if (nodes < kFewestNodes) return {};
+  const double explained = squaresOfNodes(sums), noise = noiseBeside(sums, explained);
   ShakeMemory& memory = *watch.memory;
-  if (!watch.rolling && !showsSign(explained, noise, nodes.size())) {
+  if (!watch.rolling && !showsSign(sums, explained, noise)) {
     memory.fade();
     return {};
   }
-  const Remainder left = remainderOf(system, motion, !watch.rolling, time);
-  const ShakeShapes::Roots& roots = shapes.of(static_cast<Eigen::Index>(nodes.size()));
+  const Remainder left = remainderOf(sums, !watch.rolling);
+  const ShakeShapes::Roots& roots = shapes.of(nodes);
   ShakeMemory::Likelihoods likelihoods = {};
   for (size_t i = 0; i < roots.size(); ++i) {
     const Eigen::MatrixXd root = forThreeAxes(roots[i]);
@@ -208,8 +156,10 @@ RowShake findRowShake(const std::vector<RowNode>& nodes, const MotionUnknown& mo
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > (watch.rolling ? kLeastLikelihood : kLeastOfGlobal))) return {};
-  return takenOut(system, motion.information, noise, size, forThreeAxes(roots[size.cycles]));
+  if (!(size.likelihood > (watch.told ? kLeastLikelihood : kLeastUntold))) return {};
+  // The size is the mean of three axes, but one axis may have all of it.
+  const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
+  return {size.stddev * size.stddev, sums.takeOut(root, noise)};
 }
 
 }  // namespace uav_landing

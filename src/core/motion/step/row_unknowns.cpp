@@ -1,5 +1,6 @@
 #include "motion/step/row_unknowns.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 namespace uav_landing {
@@ -45,9 +46,12 @@ std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalM
   return nodes;
 }
 
-TimeUnknown timeUnknown(const SumsByTime& by_time) {
-  constexpr double kAnyReadout = 0.02;  // s
-  return {by_time.with_motion, by_time.information + 1 / (kAnyReadout * kAnyReadout), by_time.right};
+// Root of the covariance of the nodes' rotations, when the whole readout has a turn of this covariance.
+Eigen::MatrixXd rootOfTurn(const std::vector<RowNode>& nodes, const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d root = covariance.llt().matrixL();
+  Eigen::MatrixXd all(3 * nodes.size(), 3);
+  for (size_t i = 0; i < nodes.size(); ++i) all.middleRows<3>(3 * i) = nodes[i].share * root;
+  return all;
 }
 
 }  // namespace
@@ -55,19 +59,21 @@ TimeUnknown timeUnknown(const SumsByTime& by_time) {
 RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                             const FittedRows& fitted, const RowDoubt& doubt, MotionMemory& memory) {
   RowUnknowns found;
+  found.information = found.without_shake = fitted.motion.information;
   found.has_time = std::any_of(matches.begin(), matches.end(),
                                [](const TemporalMatch& match) { return !match.by_readout.isZero(0); });
   const MotionRows* later = found.has_time ? &laterRows(rig, matches, fitted.linearised, memory) : nullptr;
-  SumsByTime& by_time = found.by_time;
-  if (later != nullptr) by_time = sumsByReadout(fitted.rows, *later, fitted.step, fitted.factor);
+  if (later != nullptr) found.by_time = sumsByReadout(fitted.rows, *later, fitted.step, fitted.factor);
   if (doubt.shake.rows == nullptr || doubt.shake.memory == nullptr) return found;
-  found.shake =
-      findRowShake(rowNodes(*doubt.shake.rows, matches, fitted, later), fitted.motion,
-                   later != nullptr ? timeUnknown(by_time) : TimeUnknown(), doubt.shake, memory.shapes);
-  if (!found.shake.found()) return found;
-  by_time.right -= by_time.with_motion.dot(found.shake.step) + found.shake.time_right;
-  by_time.with_motion -= found.shake.time_with_motion;
-  by_time.information -= found.shake.time_information;
+  const std::vector<RowNode> nodes = rowNodes(*doubt.shake.rows, matches, fitted, later);
+  if (nodes.empty()) return found;
+  RowSums sums(nodes, fitted.motion, found.by_time);
+  if (!doubt.turn.isZero(0)) found.step = sums.takeOut(rootOfTurn(nodes, doubt.turn));
+  found.without_shake = sums.motion.information;
+  found.shake = findRowShake(doubt.shake, memory.shapes, sums);
+  found.step += found.shake.step;
+  found.information = sums.motion.information;
+  found.by_time = sums.by_time;
   return found;
 }
 

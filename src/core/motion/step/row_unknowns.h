@@ -11,18 +11,32 @@
 
 namespace uav_landing {
 
+/// Working memory of a fit: all matches, and a second problem for the three drawn ones or for another readout
+/// time.
+struct MotionMemory {
+  MotionRows all, drawn;
+  std::vector<TemporalMatch> shifted;
+  ShakeShapes shapes;
+};
+
 /// Possible errors of a motion, because rows are exposed one after the other.
 struct RowDoubt {
   ShakeWatch shake;
   /// Derivative of the given normal by a readout time that is estimated, 1/s.
   Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();
+  /// Covariance of a turn over a whole readout that nothing has accounted for, rad^2. It grows in proportion
+  /// to the time of the row. The camera turns faster or slower than it was thought to.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
 };
 
 /// Additional unknowns of a motion, because rows are exposed one after the other.
 struct RowUnknowns {
-  bool has_time = false;  ///< whether a readout time is estimated, so that matches have by_readout
-  SumsByTime by_time;     ///< sums of the readout time, reduced by the shake
+  bool has_time = false;   ///< whether a readout time is estimated, so that matches have by_readout
+  SumsByTime by_time;      ///< sums of the readout time, reduced by turn and shake
+  Matrix9d information;    ///< information on the motion, reduced by turn and shake
+  Matrix9d without_shake;  ///< the same, reduced by the turn alone
   RowShake shake;
+  Vector9d step = Vector9d::Zero();  ///< change of the motion to the one that fits best with all of them
 };
 
 /// State of a fit after its last iteration.

@@ -50,16 +50,15 @@ MotionOverGround StepMatching::overGround(const StepImages& step, const CameraMo
                                           const RowTimes* times) const {
   MotionOverGround over_ground{motion, step.normal.vector()};
   if (times == nullptr || times->atOnce() || !(step.duration > 0)) return over_ground;
-  const RowMotion now = evenMotion(motion, step.duration);
   const double height_then = 1 + step.normal.vector().dot(motion.t);
-  over_ground.rows = {times, now,
-                      step.rows_then.value_or(RowMotion{now.w, motion.R.transpose() * now.v / height_then})};
+  const StepEnds ends = step.turns.ends(motion, step.duration, height_then);
+  over_ground.rows = {times, ends.now, ends.then};
   return over_ground;
 }
 
 MotionPrior StepMatching::priorOf(const StepImages& step, const CameraMotion& start,
                                   const RotationPrior* rotation) const {
-  return {start, step.normal, rotation, {step.shake, step.doubt.normal_by_time}};
+  return {start, step.normal, rotation, {step.shake, step.doubt.normal_by_time, step.turn_doubt}};
 }
 
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,

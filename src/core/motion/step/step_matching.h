@@ -1,7 +1,6 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <optional>
 #include <vector>
 
 #include "geometry/ground_normal.h"
@@ -9,6 +8,7 @@
 #include "motion/matching/temporal_matching.h"
 #include "motion/step/ego_motion.h"
 #include "motion/step/readout_shift.h"
+#include "motion/step/turn_history.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
@@ -32,14 +32,15 @@ struct StepImages {
   double duration;                            ///< time between the two images, s
   const std::vector<TrackedCorner>& corners;  ///< of the image now
   MotionSearchMemory& memory;
+  const TurnHistory& turns;                 ///< up to the image then
   GroundNormal normal;                      ///< of the ground now
   const RotationPrior* rotation = nullptr;  ///< from an inertial sensor; null: not known
   bool regular = false;  ///< the prediction still holds: hardly longer than the last step (see Steadiness)
   SearchTime time = SearchTime::kAmple;
-  const RowTimes* times = nullptr;          ///< row times of the left image
-  ShakeWatch shake = {};                    ///< over frame steps
-  ReadoutDoubt doubt = {};                  ///< when the readout time is not given
-  std::optional<RowMotion> rows_then = {};  ///< velocities of the camera then, when they are known
+  const RowTimes* times = nullptr;                       ///< row times of the left image
+  ShakeWatch shake = {};                                 ///< over frame steps
+  ReadoutDoubt doubt = {};                               ///< when the readout time is not given
+  Eigen::Matrix3d turn_doubt = Eigen::Matrix3d::Zero();  ///< see RowDoubt::turn
 };
 
 /// Follows corners over a step, starting where a motion predicts them, and estimates the motion from the
