@@ -66,7 +66,7 @@ class ApproachAngleNodelet : public StageNodelet {
           });
     }
     if (!parameters_.use_imu || node_.imu.empty()) return;
-    imu_ = std::make_unique<ImuInput>(parameters_);
+    imu_ = std::make_unique<ImuInput>(parameters_, leftRowSpan(shared_.rig));
     tf_static_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
         "/tf_static", 100,
         [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addTransforms(*m); }); });
@@ -127,6 +127,7 @@ class ApproachAngleNodelet : public StageNodelet {
   }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
     if (imu_) status.add("imu", imu_use_);
+    if (!imu_rows_.empty()) status.add("imu within images", imu_rows_);
     if (readout_.known())
       status.addf("estimated readout time [ms]", "%.0f +- %.0f", 1e3 * readout_.time,
                   1e3 * std::sqrt(readout_.variance));
@@ -191,7 +192,7 @@ class ApproachAngleNodelet : public StageNodelet {
           });
     });
     result.stamp = stamp;
-    noteImu(result.imu);
+    noteImu(result);
     noteReadout(result.readout);
     warnOf(result.failure);
     warnOfRig(stage_.warnings());
@@ -208,10 +209,16 @@ class ApproachAngleNodelet : public StageNodelet {
     NODELET_WARN("%s: %s", getName().c_str(), advice.c_str());
   }
 
-  void noteImu(const AttitudePrior& imu) {
+  void noteImu(const ApproachAngleResult& result) {
+    const AttitudePrior& imu = result.imu;
     imu_unused_ = imu.failure && !imu.hasRotation();
     imu_reason_ = imu.failure.message();
     imu_use_ = !imu.failure ? "used" : imu.hasRotation() ? "rotation only: " + imu_reason_ : imu_reason_;
+    imu_rows_ = imu.rows ? "used" : imu.rows_failure.message();
+    const std::string rows = adviceOnImu(result);
+    if (rows.empty()) return;
+    imu_unused_ = true;
+    imu_reason_ = "within images, whose rows move: " + rows;
   }
 
   ReadoutEstimate readout_;  // of the last pair, for the diagnostics
@@ -234,6 +241,7 @@ class ApproachAngleNodelet : public StageNodelet {
   bool imu_heard_ = false, imu_unused_ = false;  // heard since the last complaint; unused by the last pair
   std::string imu_reason_;                       // of the last pair
   std::string imu_use_ = "no pair yet";          // by the last pair, for the diagnostics
+  std::string imu_rows_;                         // the same between the rows; empty: rows have no times
 };
 
 }  // namespace uav_landing

@@ -123,6 +123,7 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   message.runway = toMessage(result.runway);
   message.sight = toMessage(result.sight);
   message.imu = toMessage(result.imu);
+  toArray(result.plane_by_turns, message.plane_by_turns);
   message.readout_time = result.readout.time;
   message.readout_time_variance = result.readout.variance;
   message.compute_ms = compute_ms;
@@ -149,6 +150,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   result.runway = toResult(message.runway);
   result.sight = toResult(message.sight);
   result.imu = toResult(message.imu);
+  fromArray(message.plane_by_turns, result.plane_by_turns);
   result.readout = {message.readout_time, message.readout_time_variance};
   return result;
 }

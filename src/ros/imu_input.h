@@ -27,7 +27,9 @@ ImuReading toReading(const sensor_msgs::Imu& message);
 /// thread safe.
 class ImuInput {
  public:
-  explicit ImuInput(const ApproachAngleParameters& parameters) : buffer_(parameters), frames_("", "") {}
+  /// rows: when the rows of the left camera are exposed.
+  explicit ImuInput(const ApproachAngleParameters& parameters, const RowSpan& rows = {})
+      : buffer_(parameters, rows), frames_("", "") {}
 
   /// Takes a message of /tf_static.
   void addTransforms(const tf2_msgs::TFMessage& message) { frames_.add(message, true); }

@@ -85,7 +85,7 @@ uav_landing_add_gtest(vanishing_point_test test/core/lines/vanishing_point_test.
 
 # rig
 uav_landing_add_gtest(pair_skew_test test/core/rig/pair_skew_test.cpp)
-uav_landing_add_gtest(plane_rate_test test/core/rig/plane_rate_test.cpp)
+uav_landing_add_gtest(plane_rate_test test/core/rig/plane_rate_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
 
@@ -147,6 +147,7 @@ uav_landing_add_gtest(vertical_disparity_test test/core/stereo/rows/vertical_dis
 # motion
 uav_landing_add_gtest(approach_angle_test test/core/motion/approach_angle_test.cpp)
 uav_landing_add_gtest(turn_history_test test/core/motion/turn_history_test.cpp)
+uav_landing_add_gtest(row_rates_test test/core/motion/row_rates_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(row_sums_test test/core/motion/row_sums_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(row_shake_test test/core/motion/row_shake_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(readout_filter_test test/core/motion/readout_filter_test.cpp)

@@ -28,6 +28,15 @@ Readout rightReadout(const RigParameters& parameters);
 /// rows. Otherwise a global shutter.
 Readout unknownReadout(const RigParameters& parameters);
 
+/// Times between which the rows of the left camera are exposed, s since the stamp; both 0: all at once.
+struct RowSpan {
+  double first = 0, last = 0;
+
+  bool atOnce() const { return first == last; }
+};
+/// By the parameters. A readout time that is not given counts as 0.
+RowSpan leftRowSpan(const RigParameters& parameters);
+
 /// Tells when the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a
 /// pixel to its raw row. In a rig that is mounted upside down the first row is at the bottom. The default is
 /// a global shutter.

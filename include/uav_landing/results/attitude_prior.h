@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <memory>
 
 #include "uav_landing/base/failure.h"
+#include "uav_landing/motion/row_turns.h"
 
 namespace uav_landing {
 
@@ -18,6 +20,10 @@ struct AttitudePrior {
   /// Rotation vector of R, rad. A point at rest moves as x_now = R x_then.
   Eigen::Vector3d rotation = Eigen::Vector3d::Constant(std::nan(""));
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Constant(std::nan(""));  ///< rad^2
+
+  /// Turns while the rows of a rolling shutter are exposed; null: not known, for rows_failure.
+  std::shared_ptr<const RowTurns> rows;
+  Failure rows_failure;
 
   bool hasNormal() const { return normal.allFinite() && normal_covariance.allFinite(); }
   bool hasRotation() const { return rotation.allFinite() && rotation_covariance.allFinite() && duration > 0; }

@@ -225,10 +225,16 @@ struct ApproachAngleResult {
   Sight sight;
   /// Estimate by the pairs before. All numbers of this pair are corrected by it, and their claims contain its
   /// error.
+  /// Error of the plane of stereo by turns between its rows, which an inertial sensor measured, 1/m. It is to
+  /// be taken off.
+  Eigen::Vector3d plane_by_turns = Eigen::Vector3d::Zero();
   ReadoutEstimate readout;
   /// Prior of an inertial sensor. The slope of the ground is in the normal's covariance.
   AttitudePrior imu;
 };
+/// Why an inertial sensor does not tell how rows move on their own; empty when they do not, or when there is
+/// no such sensor.
+std::string adviceOnImu(const ApproachAngleResult& result);
 
 enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 const char* toString(Status status);

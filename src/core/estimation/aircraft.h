@@ -14,8 +14,8 @@ constexpr double kDegree = M_PI / 180;
 constexpr double kTurnRate = 5 * kDegree;
 /// A faster turn may as well be a wrong measurement, rad/s: five sigma of kTurnRate.
 constexpr double kUnusualTurnRate = 5 * kTurnRate;
-/// 1 sigma of the jerk of a turn when no turns have told it yet, rad/s^3: a small aircraft that gusts roll by
-/// 2 degrees, to and fro once a second.
+/// 1 sigma of the change of an angular acceleration when nothing has told it yet, rad/s^3. It is that of a
+/// small aircraft in gusts, which rolls by 2 degrees to and fro once a second.
 constexpr double kTurnJerk = 500 * kDegree;
 /// Largest turn between two images of a pair that are not taken at the same time, rad/s: a bound, not a
 /// sigma.

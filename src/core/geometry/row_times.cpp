@@ -40,6 +40,12 @@ Readout unknownReadout(const RigParameters& p) {
   return left;
 }
 
+RowSpan leftRowSpan(const RigParameters& p) {
+  const Readout left = leftReadout(p);
+  const double top = -left.stamp_row * left.time, bottom = (1 - left.stamp_row) * left.time;
+  return {std::min(top, bottom), std::max(top, bottom)};
+}
+
 RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout) : time_(readout.time) {
   if (atOnce()) return;
   const CameraCalibration c = calibration.ofDeliveredImage();

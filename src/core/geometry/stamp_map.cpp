@@ -17,6 +17,11 @@ Eigen::Vector3d turned(const Eigen::Vector3d& a, const Eigen::Vector3d& x) {
 
 }  // namespace
 
+Eigen::Vector3d GyroTurn::at(double seconds) const {
+  if (!rows) return Eigen::Vector3d::Zero();
+  return rows->beyondMean(seconds + late) - rows->beyondMean(late);
+}
+
 Eigen::Vector3d planeRate(const PlaneVector& plane, const RowMotion& motion) {
   const Eigen::Vector3d& g = plane;
   return motion.w.cross(g) + g * g.normalized().dot(motion.v);

@@ -1,22 +1,33 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/row_times.h"
+#include "uav_landing/motion/row_turns.h"
 
 namespace uav_landing {
 
+/// What an inertial sensor measured of a turn, beyond its mean rate.
+struct GyroTurn {
+  std::shared_ptr<const RowTurns> rows = nullptr;  ///< null: there is no such sensor
+  double late = 0;                                 ///< s by which the sensor's times are to be later
+
+  Eigen::Vector3d at(double seconds) const;
+};
+
 /// Motion of the camera at the stamp of an image, in its own frame at that time. A scene at rest is at x(t) =
-/// exp(w t + a t^2 / 2) (x - v t). Lengths are in units of the height at the stamp.
+/// exp(turn(t)) (x - v t). Lengths are in units of the height at the stamp.
 struct RowMotion {
   Eigen::Vector3d w = Eigen::Vector3d::Zero();  ///< rad/s
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< 1/s
   Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< rad/s^2
+  GyroTurn beyond = {};
 
   /// Rotation vector from the stamp to some seconds after it.
-  Eigen::Vector3d turn(double seconds) const { return seconds * (w + seconds / 2 * a); }
+  Eigen::Vector3d turn(double seconds) const { return seconds * (w + seconds / 2 * a) + beyond.at(seconds); }
 };
 
 /// Rate of a plane vector, 1/m/s.
@@ -26,7 +37,7 @@ Eigen::Vector3d planeRate(const PlaneVector& plane, const RowMotion& motion);
 /// Points are on the ground, or at an inverse depth (times the height) of their own. Pixels above the horizon
 /// are at infinity. Without row times every place stays as it is.
 /// A pixel's ray r at the time t of its row meets the ground at the inverse depth w = g(t).r, with
-///   g(t) = R n / (1 - n.v t),   R = exp(w t).
+///   g(t) = R n / (1 - n.v t),   R = exp(turn(t)).
 /// At the stamp, the point is seen in the direction R' r + w v t.
 class StampMap {
  public:

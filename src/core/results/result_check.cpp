@@ -240,6 +240,8 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepSight(kept.sight);
   keepImu(kept.imu);
   if (!isReadout(kept.readout)) kept.readout = {};
+  constexpr double kLargestByTurns = 1;  // 1/m
+  if (!(kept.plane_by_turns.cwiseAbs().maxCoeff() <= kLargestByTurns)) kept.plane_by_turns.setZero();
   if (!(kept.other_runway_probability >= 0 && kept.other_runway_probability <= 1))
     kept.other_runway_probability = 1;
   if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "results/row_motion.h"
 
 namespace uav_landing {
 
@@ -46,6 +47,11 @@ std::string adviceOn(const ReadoutEstimate& readout) {
   if (!(stddev <= kUseful) || !(std::abs(readout.time) > kCertain * stddev)) return "";
   return text("rows are read within ", std::round(readout.time * 1e3), " +- ", std::ceil(stddev * 1e3),
               " ms, one after the other: set rig/readout_time");
+}
+
+std::string adviceOnImu(const ApproachAngleResult& result) {
+  if (!rowsMove(result.step) && !rowsMove(result.window)) return "";
+  return result.imu.rows_failure.message();
 }
 
 }  // namespace uav_landing

@@ -22,6 +22,15 @@ Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& reado
 void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,
                 StereoDepthResult& stereo);
 
+/// What turns beyond the mean rate do to the plane of stereo, 1/m, by its points: a plane is fitted to what
+/// they add to the disparities. times: of the rows.
+Eigen::Vector3d planeByTurns(const StereoRig& rig, const RowTimes& times, const GyroTurn& turns,
+                             const StereoDepthResult& stereo);
+
+/// Takes that off the plane. Points stand for all pixels that made the plane, so a part of it stays as
+/// uncertainty.
+void takeOff(const Eigen::Vector3d& by_turns, StereoDepthResult& stereo);
+
 /// The same by the rate of stereo alone. Nothing changes when the readout time is given.
 Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& stereo);
 

@@ -90,7 +90,7 @@ struct ApproachAngleStage::Implementation {
     if (result.failure) {
       nothingKnown(result);
       if (result.failure.reason == Reason::kInputInvalid) return result;
-      skip(stamp, left, stereo);
+      skip(result, left, stereo);
       return result;
     }
     const bool waits = waitsForPlane(stamp, stereo);
@@ -99,12 +99,14 @@ struct ApproachAngleStage::Implementation {
       result.failure = {Reason::kNotYet,
                         "waiting for the ground plane: lines and motion follow one pair later"};
       nothingKnown(result);
-      skip(stamp, left, stereo);
+      skip(result, left, stereo);
       return result;
     }
-    const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
+    const std::optional<RowMotion> motion = tracker.lastMotion(stamp, result.imu);
     DoubtByReadout plane{Eigen::Vector3d::Zero(), stereo.plane.covariance};
     plane.by_time = motion ? carryPlane(*motion, result.readout, stereo) : carryPlane(result.readout, stereo);
+    if (motion) result.plane_by_turns = planeByTurns(model.rig, model.left_times, motion->beyond, stereo);
+    takeOff(result.plane_by_turns, stereo);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
@@ -120,7 +122,7 @@ struct ApproachAngleStage::Implementation {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
       nothingKnown(result);
-      skip(stamp, left, stereo);
+      skip(result, left, stereo);
       return result;
     }
     straightenPlan(result);
@@ -136,7 +138,7 @@ struct ApproachAngleStage::Implementation {
     if (repeated(stereo)) {
       result.runway.failure = result.runway.threshold_failure = result.step.failure;
     } else {
-      result.runway = runway.process({left, model.left_mask, rowsOf(stamp, model.rig.K(), model.left_times)},
+      result.runway = runway.process({left, model.left_mask, rowsOf(result, model.rig.K(), model.left_times)},
                                      result, direction, has_plane ? stereo.plane.height() : kUnknown);
     }
     return result;
@@ -177,18 +179,18 @@ struct ApproachAngleStage::Implementation {
   }
 
   // Maps rows to the stamp with the last motion over the last known ground.
-  StampMap rowsOf(double stamp, const Eigen::Matrix3d& K, const RowTimes& times) const {
-    const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
+  StampMap rowsOf(const ApproachAngleResult& result, const Eigen::Matrix3d& K, const RowTimes& times) const {
+    const std::optional<RowMotion> motion = tracker.lastMotion(result.stamp, result.imu);
     if (times.atOnce() || !motion || !last_normal.allFinite()) return {};
     return {K, times, *motion, last_normal};
   }
 
-  StereoViews viewsOf(double stamp, const cv::Mat& left, const cv::Mat& right) const {
+  StereoViews viewsOf(const ApproachAngleResult& result, const cv::Mat& left, const cv::Mat& right) const {
     Eigen::Matrix3d right_K = model.rig.K();
     right_K(0, 2) = model.rig.cx_right;
     return {model.rig,
-            {left, left_mask, rowsOf(stamp, model.rig.K(), model.left_times)},
-            {right, right_mask, rowsOf(stamp, right_K, model.right_times)}};
+            {left, left_mask, rowsOf(result, model.rig.K(), model.left_times)},
+            {right, right_mask, rowsOf(result, right_K, model.right_times)}};
   }
 
   // Sets motion and runway to not known, with the reason of the pair.
@@ -235,12 +237,12 @@ struct ApproachAngleStage::Implementation {
     return {};
   }
 
-  void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
+  void skip(const ApproachAngleResult& result, const cv::Mat& left, const StereoDepthResult& stereo) {
     if (repeated(stereo)) return;
     last = {};
-    identity.skip(stamp);
-    tracker.skip(stamp, left);
-    runway.skip(stamp);
+    identity.skip(result.stamp);
+    tracker.skip(result.stamp, left, result.imu);
+    runway.skip(result.stamp);
   }
 
   // The ground differs from level ground by its slope, so the slope is added to the covariance of the normal.
@@ -253,8 +255,8 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
-    RunwayDirection direction = findRunwayDirection(viewsOf(result.stamp, left, right), ground, parameters,
-                                                    direction_memory, timings);
+    RunwayDirection direction =
+        findRunwayDirection(viewsOf(result, left, right), ground, parameters, direction_memory, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;

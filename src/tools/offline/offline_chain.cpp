@@ -22,7 +22,8 @@ OfflineChain::OfflineChain(const Parameters& parameters, const std::string& came
       sinks_(sinks),
       complain_(std::move(complain)),
       range_(parameters.rig.bits) {
-  if (with_imu && parameters.approach_angle.use_imu) imu_.emplace(parameters.approach_angle);
+  if (with_imu && parameters.approach_angle.use_imu)
+    imu_.emplace(parameters.approach_angle, leftRowSpan(parameters.rig));
 }
 
 void OfflineChain::addTransforms(const tf2_msgs::TFMessage& static_transforms) {
@@ -85,6 +86,8 @@ void OfflineChain::process(const Waiting& pair) {
   if (imu_ && imu.failure && !imu.hasRotation()) complainOfImu("imu: " + imu.failure.message());
   const Failure problem = run(pair.left, pair.right, skew, imu);
   if (!problem) {
+    if (const std::string advice = adviceOnImu(output_->approach); !advice.empty())
+      complainOfImu("imu: not used within images, whose rows move: " + advice);
     // Logged as by the nodelets, because a rig that is mounted wrongly gives no result on any pair.
     const Failure& mounting = output_->stereo.failure;
     if (mounting.reason == Reason::kInputInvalid || mounting.reason == Reason::kNegativeDisparity)

@@ -57,8 +57,9 @@ std::string causeOf(const PairTally& tally) {
            "rig's calibration, or a camera has turned since: calibrate again";
   if (share.test(IntegrityTest::kRowMotion) > 0.5)
     return "rows of the images move on their own (test row_motion): vibration with a rolling shutter. Mount "
-           "the cameras softer, or use global shutters, and give rig/readout_time; heights are valid alone "
-           "(column height_valid)";
+           "the cameras softer, use global shutters, or record an inertial sensor of 200 Hz or more, and "
+           "give "
+           "rig/readout_time; heights are valid alone (column height_valid)";
   if (share.test(IntegrityTest::kSinkRate) + share.test(IntegrityTest::kMotionNormal) > 0.4)
     return "heights change otherwise than the motion says (tests motion_normal, sink_rate): a camera has "
            "turned sideways since the calibration: calibrate again";

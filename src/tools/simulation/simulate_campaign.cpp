@@ -79,7 +79,7 @@ void fly(const Options& options, const SimulatorParameters& drawn, Parameters pa
   parameters.rig.readout_time = drawn.image.readout_time;
   parameters.rig.stamp_row = drawn.image.stamp_row;
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
-  ImuBuffer imu(parameters.approach_angle);
+  ImuBuffer imu(parameters.approach_angle, leftRowSpan(parameters.rig));
   for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
   std::vector<Viewer> viewers = viewersOf(options, drawn, simulator.rig(), parameters, sample.seed);
   for (const std::string& warning : viewers.front().pipeline.warnings())

@@ -39,6 +39,24 @@ TEST(RowTimes, RunFromTheFirstRowToTheLastAroundTheOneOfTheStamp) {
   EXPECT_NEAR(times.plane()[1], 0, 1e-12);
 }
 
+TEST(RowSpan, IsThatOfTheLeftCamerasRows) {
+  RigParameters rig;
+  EXPECT_TRUE(leftRowSpan(rig).atOnce()) << "nothing is given";
+  rig.readout_time = 0.03;
+  rig.stamp_row = 0.25;
+  EXPECT_NEAR(leftRowSpan(rig).first, -0.0075, 1e-12);
+  EXPECT_NEAR(leftRowSpan(rig).last, 0.0225, 1e-12);
+  rig.readout_time = -0.03;
+  EXPECT_NEAR(leftRowSpan(rig).first, -0.0225, 1e-12);
+  EXPECT_NEAR(leftRowSpan(rig).last, 0.0075, 1e-12);
+  rig.right_readout_time = 0.01;
+  rig.upside_down = true;
+  EXPECT_NEAR(leftRowSpan(rig).last, 0.0075, 1e-12) << "the camera that works as the left one";
+  rig.readout_time = 0;
+  rig.right_readout_time = 0;
+  EXPECT_TRUE(leftRowSpan(rig).atOnce());
+}
+
 TEST(LaterRows, AreThoseOfTheMiddleUntilATenthOfTheLongerReadoutLiesBetweenOthers) {
   const RowTimes longer(plainCamera(), {kReadout, 0.5});
   const cv::Size size(640, 480);

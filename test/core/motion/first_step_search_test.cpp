@@ -30,7 +30,7 @@ struct Flight {
   StepMatching matching{rig, cv::Mat(rig.size, CV_8UC1, cv::Scalar(255)), parameters};
   FirstStepSearch search{false};
   MotionSearchMemory memory;
-  TurnHistory turns;
+  RowRates rates;
 
   Pose at(double t) const {
     Pose pose;
@@ -58,7 +58,7 @@ struct Flight {
                                      period,
                                      corners,
                                      memory,
-                                     turns,
+                                     rates,
                                      {n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose())},
                                      rotation,
                                      false,

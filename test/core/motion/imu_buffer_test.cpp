@@ -69,6 +69,89 @@ class ImuBufferTest : public ::testing::Test {
   const Eigen::Matrix3d mounting_ = opticalFromImu();
 };
 
+/// A sensor on a rig that vibrates, and rows of 30 ms around the stamp.
+class ImuRowsTest : public ImuBufferTest {
+ protected:
+  static constexpr RowSpan kRows{-0.015, 0.015};  // s
+  static constexpr double kStamp = 0.5, kAmplitude = 0.01, kFrequency = 37;
+
+  /// Turn of the sensor about its y axis, rad.
+  static double angleAt(double t) { return kAmplitude * std::sin(2 * M_PI * kFrequency * t); }
+  static ImuSample sampleOf(double t) {
+    ImuSample sample;
+    sample.stamp = t;
+    const double rate = 2 * M_PI * kFrequency * kAmplitude * std::cos(2 * M_PI * kFrequency * t);
+    sample.angular_velocity = Eigen::Vector3d(0, rate, 0);
+    return sample;
+  }
+  ImuBuffer vibrating(double rate, double until) const {
+    ImuBuffer buffer(parameters, kRows);
+    for (int i = 0; i <= until * rate; ++i) buffer.add(sampleOf(i / rate));
+    return buffer;
+  }
+  AttitudePrior at(const ImuBuffer& buffer) const { return buffer.at(kStamp, std::nullopt, mounting_); }
+};
+
+TEST_F(ImuRowsTest, TurnsBetweenRowsAreThoseOfTheVibration) {
+  for (const double rate : {200.0, 400.0, 1000.0}) {
+    const AttitudePrior prior = at(vibrating(rate, 0.6));
+    ASSERT_TRUE(prior.rows) << rate << ' ' << prior.rows_failure.message();
+    for (const double t : {-0.015, -0.0062, 0.0, 0.004, 0.015}) {
+      const Eigen::Vector3d turn = prior.rows->beyondMean(t) + t * prior.rows->meanRate();
+      // The scene turns the other way than the sensor.
+      const Eigen::Vector3d truth = mounting_ * Eigen::Vector3d(0, angleAt(kStamp) - angleAt(kStamp + t), 0);
+      EXPECT_LT((turn - truth).norm(), 0.03 * kAmplitude) << rate << ' ' << t;
+    }
+  }
+}
+
+TEST_F(ImuRowsTest, NeedMessagesAtTwoHundredHertz) {
+  const AttitudePrior prior = at(vibrating(100, 0.6));
+  EXPECT_FALSE(prior.rows);
+  EXPECT_EQ(prior.rows_failure.detail,
+            "the imu's messages are up to 10 ms apart while rows are exposed: 200 Hz are needed");
+  ImuBuffer with_gap(parameters, kRows);
+  for (int i = 0; i <= 240; ++i)
+    if (i != 198) with_gap.add(sampleOf(i / 400.0));
+  EXPECT_TRUE(at(with_gap).rows);
+  ImuBuffer with_longer_gap(parameters, kRows);
+  for (int i = 0; i <= 240; ++i)
+    if (i != 198 && i != 199) with_longer_gap.add(sampleOf(i / 400.0));
+  EXPECT_FALSE(at(with_longer_gap).rows);
+  EXPECT_FALSE(at(with_longer_gap).rows_failure.detail.empty());
+}
+
+TEST_F(ImuRowsTest, NeedTheMessageAfterTheLastRow) {
+  const AttitudePrior late = at(vibrating(400, 0.51));
+  EXPECT_FALSE(late.rows);
+  EXPECT_EQ(late.rows_failure.detail,
+            "the newest imu message is 5 ms before the last row: it comes too late");
+  EXPECT_TRUE(at(vibrating(400, 0.515)).rows);
+  EXPECT_FALSE(vibrating(400, 0.51).covers(kStamp)) << "a pair waits for it";
+  EXPECT_TRUE(vibrating(400, 0.515).covers(kStamp));
+  EXPECT_TRUE(vibrating(100, 0.51).covers(kStamp))
+      << "these messages tell no rows, so there is none to wait for";
+}
+
+TEST_F(ImuRowsTest, AreNotLookedAtWithAGlobalShutter) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 240; ++i) buffer.add(sampleOf(i / 400.0));
+  EXPECT_FALSE(at(buffer).rows);
+  EXPECT_FALSE(at(buffer).rows_failure);
+  EXPECT_TRUE(buffer.covers(0.6));
+}
+
+TEST_F(ImuRowsTest, NeedAnAngularVelocity) {
+  ImuBuffer buffer(parameters, kRows);
+  for (int i = 0; i <= 240; ++i) {
+    ImuSample sample = sampleAt(i / 400.0);
+    sample.angular_velocity.reset();
+    buffer.add(sample);
+  }
+  EXPECT_FALSE(at(buffer).rows);
+  EXPECT_TRUE(at(buffer).rows_failure);
+}
+
 TEST_F(ImuBufferTest, GravityAndRotationBetweenMessagesAreThoseOfThePose) {
   const ImuBuffer buffer = filled(100, 2);
   for (const double t : {0.503, 1.0, 1.2345}) {

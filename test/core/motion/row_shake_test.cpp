@@ -83,7 +83,7 @@ struct ShakenStep {
                           {{truth.movement.R, truth.t},
                            {normal, test::across(normal, kSlope)},
                            nullptr,
-                           {{&unitTimes(), memory, rolling, rolling}, Eigen::Vector3d::Zero()}},
+                           {{&unitTimes(), memory, rolling, !rolling}, Eigen::Vector3d::Zero()}},
                           20, work);
   }
   /// Error of the translation across the way, up and down, over its claimed standard deviation.

@@ -18,6 +18,8 @@ struct Problem {
   Eigen::MatrixXd by_motion, by_rotation;
   Eigen::VectorXd by_time, residual;
   Eigen::MatrixXd root;  // of the covariance of the rotations
+  Matrix9d prior;        // of another problem with a prior
+  Vector9d pull;
 
   explicit Problem(unsigned seed) {
     std::mt19937 random(seed);
@@ -32,6 +34,9 @@ struct Problem {
     by_time = any(kResiduals, 1);
     residual = any(kResiduals, 1);
     root = 0.3 * any(kRotations, 2);
+    const Eigen::MatrixXd some = any(9, 9);
+    prior = some * some.transpose();
+    pull = any(9, 1);
     // The motion fits best without rotations.
     residual -=
         by_motion * (by_motion.transpose() * by_motion).ldlt().solve(by_motion.transpose() * residual);
@@ -46,7 +51,7 @@ struct Problem {
     time.with_motion = by_motion.transpose() * by_time;
     time.information = by_time.squaredNorm();
     time.right = by_time.dot(residual);
-    RowSums sums(nodes, {information, information, Vector9d::Zero()}, time);
+    RowSums sums(nodes, {information, information + prior, pull}, time);
     sums.rotation = by_rotation.transpose() * by_rotation;
     sums.with_motion = by_rotation.transpose() * by_motion;
     sums.score = by_rotation.transpose() * residual;
@@ -83,9 +88,12 @@ TEST(RowSums, AreThoseOfResidualsWithTheRotationsAsNoise) {
     EXPECT_NEAR(sums.by_time.information, problem.by_time.dot(W * problem.by_time), 1e-9);
     EXPECT_NEAR(sums.by_time.right, problem.by_time.dot(W * left), 1e-9);
     EXPECT_TRUE(same(sums.by_time.with_motion, problem.by_motion.transpose() * W * problem.by_time));
-    EXPECT_NEAR(sums.squares, problem.residual.dot(W * problem.residual), 1e-9);
-    // Nothing told otherwise of the normal here.
-    EXPECT_LT(sums.motion.right_with_any_normal.norm(), 1e-9);
+    EXPECT_NEAR(sums.squares, left.dot(W * left), 1e-9);
+    // With another prior, its information and right side at the motion before.
+    const Matrix9d with_prior = information + problem.prior;
+    EXPECT_TRUE(same(sums.motion.information_with_any_normal, with_prior));
+    const Vector9d right = problem.by_motion.transpose() * W * left + problem.pull - problem.prior * step;
+    EXPECT_TRUE(same(sums.motion.right_with_any_normal, right));
   }
 }
 

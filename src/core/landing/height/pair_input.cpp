@@ -32,6 +32,7 @@ PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo
   else if (approach.readout.given())
     approach.readout = ReadoutEstimate::global();
   carryPlane(approach.step, approach.readout, stereo);
+  takeOff(approach.plane_by_turns, stereo);
   // The repeated image shows the runway from the previous place of the camera.
   if (repeated())
     approach.runway.failure = approach.runway.threshold_failure =

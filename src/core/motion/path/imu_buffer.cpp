@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/text.h"
 #include "geometry/rotation.h"
@@ -14,6 +17,8 @@ constexpr double kSpan = 60;     // s kept, as images may wait that long to be p
 constexpr size_t kMost = 60000;  // largest number of samples kept
 constexpr double kLate = 1.0;    // s, largest delay of a message
 constexpr double kSameStamp = 1e-7;
+constexpr double kRecent = 0.05;            // s
+constexpr double kLongestForRows = 5.5e-3;  // s between messages: 200 Hz, whose stamps scatter
 
 Eigen::Quaterniond exponential(const Eigen::Vector3d& w) { return Eigen::Quaterniond(rotationMatrix(w)); }
 
@@ -38,7 +43,65 @@ void ImuBuffer::add(const ImuSample& sample) {
 }
 
 bool ImuBuffer::covers(double stamp) const {
-  return !samples_.empty() && samples_.back().stamp >= stamp + parameters_.imu_delay - kSameStamp;
+  if (samples_.empty()) return false;
+  const double newest = samples_.back().stamp;
+  const bool tells_rows = !rows_.atOnce() && longestGap(newest - kRecent, newest) <= kLongestForRows;
+  return newest >= stamp + parameters_.imu_delay + (tells_rows ? rows_.last : 0) - kSameStamp;
+}
+
+double ImuBuffer::longestGap(double from, double to) const {
+  const auto after = std::lower_bound(samples_.begin(), samples_.end(), from + kSameStamp, earlier);
+  if (after == samples_.begin()) return kSpan;
+  double longest = 0;
+  for (auto sample = std::prev(after);; ++sample) {
+    if (sample->stamp >= to - kSameStamp) return longest;
+    if (std::next(sample) == samples_.end() || !sample->angular_velocity) return kSpan;
+    longest = std::max(longest, std::next(sample)->stamp - sample->stamp);
+  }
+}
+
+// The cubic through the two messages on either side; a cubic follows vibration that a line would cut short.
+Eigen::Vector3d ImuBuffer::rateAt(double t) const {
+  constexpr std::ptrdiff_t kEachSide = 2;
+  const auto after = std::lower_bound(samples_.begin(), samples_.end(), t, earlier);
+  const auto first = after - std::min(kEachSide, std::distance(samples_.begin(), after));
+  const auto end = after + std::min(kEachSide, std::distance(after, samples_.end()));
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  for (auto i = first; i != end; ++i) {
+    double weight = 1;
+    for (auto j = first; j != end; ++j)
+      if (j != i) weight *= (t - j->stamp) / (i->stamp - j->stamp);
+    rate += weight * *i->angular_velocity;
+  }
+  return rate;
+}
+
+void ImuBuffer::addRows(double stamp, const Eigen::Matrix3d& camera_from_imu, AttitudePrior& prior) const {
+  if (rows_.atOnce()) return;
+  const double t = stamp + parameters_.imu_delay, first = t + rows_.first, last = t + rows_.last;
+  const double gap = longestGap(first, std::min(last, samples_.back().stamp));
+  if (gap > kLongestForRows) {
+    prior.rows_failure = {Reason::kTimeout, text("the imu's messages are up to ", 1e3 * gap,
+                                                 " ms apart while rows are exposed: 200 Hz are needed")};
+    return;
+  }
+  if (samples_.back().stamp < last - kSameStamp) {
+    prior.rows_failure = {Reason::kTimeout,
+                          text("the newest imu message is ", 1e3 * (last - samples_.back().stamp),
+                               " ms before the last row: it comes too late")};
+    return;
+  }
+  std::vector<Eigen::Vector3d> rates;
+  for (double at = first; at <= last + RowTurns::kInterval; at += RowTurns::kInterval)
+    rates.push_back(-(camera_from_imu * rateAt(std::min(at, samples_.back().stamp))));
+  const auto sample = std::lower_bound(samples_.begin(), samples_.end(), t, earlier);
+  const double bias = parameters_.imu_rate_bias_deg * kDegree;
+  const Eigen::Matrix3d of_one = rateCovariance(sample == samples_.end() ? samples_.back() : *sample) -
+                                 bias * bias * Eigen::Matrix3d::Identity();
+  const double messages = std::max(1.0, (last - first) / std::max(gap, kSameStamp));
+  prior.rows = std::make_shared<const RowTurns>(
+      rows_.first, std::move(rates),
+      Eigen::Matrix3d(camera_from_imu * of_one * camera_from_imu.transpose() / messages));
 }
 
 Eigen::Matrix3d ImuBuffer::attitudeCovariance(const ImuSample& sample) const {
@@ -127,6 +190,7 @@ AttitudePrior ImuBuffer::at(double stamp, std::optional<double> before,
   } else {
     prior.failure = {Reason::kInputInvalid, "the imu messages have no orientation"};
   }
+  addRows(stamp, camera_from_imu, prior);
   if (!before || !(*before < stamp)) return prior;
   const std::optional<ImuSample> then = interpolate(*before + parameters_.imu_delay);
   if (!then) return prior;

@@ -13,6 +13,7 @@
 #include "image/windows/corners.h"
 #include "motion/path/approach_angle.h"
 #include "motion/step/plane_proof.h"
+#include "motion/step/readout_filter.h"
 #include "results/row_motion.h"
 
 namespace uav_landing {
@@ -128,7 +129,7 @@ void MotionTracker::reset() {
   search_.reset();
   forgetRows();
   last_rate_stddev_ = 0;
-  turns_.reset();
+  rates_ = {};
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
@@ -145,13 +146,19 @@ ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditio
 
 ShakeWatch MotionTracker::watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const {
   if (!mayRoll()) return {};
-  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known(),
-          readout.given()};
+  constexpr double kHardlyKnown = 0.75 * ReadoutFilter::kPriorStddev;  // s
+  const bool global = !readout.given() && !readout.known();
+  const bool suspected = global || readout.variance > kHardlyKnown * kHardlyKnown;
+  return {times_.atOnce() ? &unit_times_ : &times_, &memory, !global, suspected};
 }
 
-Eigen::Matrix3d MotionTracker::turnDoubt(double duration, const ReadoutEstimate& readout) const {
-  const double time = times_.atOnce() ? readout.time : times_.readoutTime();
-  return time * time * turns_.doubt(duration);
+RowDoubt MotionTracker::rowDoubt(double duration, ShakeMemory& memory, const GroundInView& seen,
+                                 const ReadoutEstimate& readout) const {
+  const double estimated = readout.known() ? readout.time : 0;
+  RowDoubt doubt = rates_.doubt(duration, times_.atOnce() ? estimated : times_.readoutTime());
+  doubt.shake = watchOf(memory, readout);
+  if (readout.known()) doubt.normal_by_readout = seen.normal_by_readout;
+  return doubt;
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -167,18 +174,20 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
   return frame;
 }
 
-std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
+std::optional<RowMotion> MotionTracker::lastMotion(double stamp, const AttitudePrior& imu) const {
   if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kRarePairs)) return std::nullopt;
-  std::optional<RowMotion> motion = past_.back().motion;
-  if (motion) motion->w += (stamp - past_.back().stamp) * motion->a;
-  return motion;
+  const std::optional<RowMotion>& motion = past_.back().motion;
+  if (!motion) return std::nullopt;
+  return rates_.expected(*motion, stamp - past_.back().stamp, imu);
 }
 
-void MotionTracker::skip(double stamp, const cv::Mat& left) {
+void MotionTracker::skip(double stamp, const cv::Mat& left, const AttitudePrior& imu) {
   Result nothing;
   nothing.window.failure = {Reason::kNotYet, "no frame step from the previous pair"};
   search_.interrupt();
-  advance(takeFrame(stamp, left), nothing);
+  Frame frame = takeFrame(stamp, left);
+  rates_.see(imu);
+  advance(std::move(frame), nothing);
 }
 
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const GroundInView& seen,
@@ -195,6 +204,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
     ScopedTimer timer(timings, "match_images_motion");
     now = takeFrame(stamp, left);
   }
+  rates_.see(conditions.imu);
   if (past_.empty()) {
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
@@ -219,15 +229,14 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         duration,
                         seen.corners,
                         memory_,
-                        turns_,
+                        rates_,
                         seen.normal,
                         rotation,
                         regular,
                         conditions.time,
                         &times_,
-                        watchOf(step_shake_, conditions.readout),
                         doubtOf(seen, conditions),
-                        turnDoubt(duration, conditions.readout)};
+                        rowDoubt(duration, step_shake_, seen, conditions.readout)};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -283,7 +292,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     // Lengths are converted from units of the previous height to units of the height now.
     const double unit = 1 + seen.normal.vector().dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    const RowMotion motion = turns_.ends(step, result.step.duration, unit).now;
+    const RowMotion motion = rates_.ends(step, result.step.duration, unit).now;
     const RowMotion motion_then = then.motion.value_or(motion);
     memory_.matching.spare = std::move(window_matches_);
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
@@ -292,11 +301,10 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     const ReadoutDoubt doubt = doubtOf(seen, conditions);
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
-    const MotionPrior prior{predicted,
-                            seen.normal,
-                            nullptr,
-                            {watchOf(window_shake_, conditions.readout), doubt.normal_by_time,
-                             turnDoubt(result.step.duration, conditions.readout)}};
+    RowDoubt rows = rowDoubt(result.step.duration, window_shake_, seen, conditions.readout);
+    rows.delay.then = motion_then.beyond;
+    if (!rows.delay.then.rows) rows.delay = {};
+    const MotionPrior prior{predicted, seen.normal, nullptr, rows};
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
@@ -378,12 +386,12 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   if (result.step_estimate) {
     const CameraMotion& step = result.step_estimate->motion;
     const StepEnds ends =
-        turns_.ends(step, result.step.duration, 1 + result.step_estimate->normal.dot(step.t));
+        rates_.ends(step, result.step.duration, 1 + result.step_estimate->normal.dot(step.t));
     past_.back().motion = ends.then;
     now.motion = ends.now;
-    turns_.add(step, result.step.duration);
+    rates_.add(step, result.step.duration, result.step_estimate->delay);
   } else {
-    turns_.reset();
+    rates_.skip();
   }
   last_window_ = result.window;
   last_step_ = result.unproven;

@@ -65,11 +65,11 @@ class MotionTracker {
                  const StepConditions& conditions = {});
   /// Whether there is an earlier image but no motion up to it, so that the next step has no prediction.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
-  /// Velocities of the camera at this stamp (s), as the last step lets expect them. Nothing when that is not
-  /// known or too old.
-  std::optional<RowMotion> lastMotion(double stamp) const;
+  /// Velocities of the camera at this stamp (s), as the last step or the inertial sensor lets expect them.
+  /// Nothing when the last step is not known or too old.
+  std::optional<RowMotion> lastMotion(double stamp, const AttitudePrior& imu) const;
   /// Keeps the image for the next step when no motion can be estimated to it.
-  void skip(double stamp, const cv::Mat& left);
+  void skip(double stamp, const cv::Mat& left, const AttitudePrior& imu = {});
   /// Call it instead of process() for an image that is the same as in the previous call. There is no step;
   /// the next one starts at the stamp at which the image first came. The window keeps its motion, and its
   /// angle becomes less certain with time. It fails when the image is older than angle_window or the stamp is
@@ -94,8 +94,8 @@ class MotionTracker {
   ReadoutDoubt doubtOf(const GroundInView& seen, const StepConditions& conditions) const;
   bool mayRoll() const { return !times_.atOnce() || !unit_times_.atOnce(); }
   ShakeWatch watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const;
-  /// Covariance of a turn over the readout that was not expected in a step, rad^2.
-  Eigen::Matrix3d turnDoubt(double duration, const ReadoutEstimate& readout) const;
+  RowDoubt rowDoubt(double duration, ShakeMemory& memory, const GroundInView& seen,
+                    const ReadoutEstimate& readout) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
                     Result& result);
@@ -121,7 +121,7 @@ class MotionTracker {
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // of last_step_, s
   double last_sink_ = 0;      // n.t of last_step_, in heights at its end
-  TurnHistory turns_;
+  RowRates rates_;
   ShakeMemory step_shake_, window_shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;

@@ -6,7 +6,8 @@ namespace {
 constexpr double kApart = 1e-3;  // s, readout time for the difference quotients
 
 // With a readout of 1 s, a camera that moves kApart times as fast has the same shifts as one with a readout
-// of kApart at full speed. What its acceleration adds is in proportion to the square of the readout time.
+// of kApart at full speed. What its acceleration adds is in proportion to the square of the readout
+// time. There is no inertial sensor within images whose readout time is estimated.
 RowMotion slowed(const RowMotion& motion, double time) {
   return {kApart * motion.w, kApart * motion.v, kApart * time * motion.a};
 }

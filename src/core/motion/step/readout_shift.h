@@ -20,7 +20,8 @@ struct ReadoutDoubt {
 
 /// Sets by_readout of the matches. Then it moves the matches to where they would be with all rows exposed at
 /// the stamps, according to the estimated time (s). The whole shift is applied to the place then. The effect
-/// is linear in the readout time as long as that is much shorter than the step.
+/// is linear in the readout time as long as that is much shorter than the step. Turns that are not even make
+/// by_readout the mean effect up to this time, which is not quite the derivative.
 ///
 /// over_ground: motion of the step, as far as it is known, with row times for a readout of 1 s. Call it again
 /// when the motion is known better; it takes back its earlier shift first.

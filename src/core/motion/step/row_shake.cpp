@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found, and the same where nothing is told of the
-// shutter. What looks like shake then mostly begins an estimate of the readout time. That costs less than an
+// Least logarithm of the likelihood ratio at which shake is found, and the same while rows are suspected.
+// What looks like shake of a global shutter begins an estimate of the readout time. That costs less than an
 // angle, so it may be less. Over flat ground no global shutter came near it: the largest was 30, and mostly
 // no pair has any sign.
-constexpr double kLeastLikelihood = 100, kLeastUntold = 60;
+constexpr double kLeastLikelihood = 100, kLeastSuspected = 60;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
@@ -131,6 +131,11 @@ ShakeMemory::Size ShakeMemory::likeliest() const {
   return best;
 }
 
+bool ShakeMemory::decide(double likelihood, double least) {
+  found_ = likelihood > (found_ ? 0.5 : 1) * least;
+  return found_;
+}
+
 const ShakeShapes::Roots& ShakeShapes::of(Eigen::Index nodes) {
   if (roots_[0].rows() == nodes) return roots_;
   for (size_t i = 0; i < roots_.size(); ++i) roots_[i] = shapesOf(nodes, ShakeMemory::kCycles[i]);
@@ -156,7 +161,7 @@ RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sum
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > (watch.told ? kLeastLikelihood : kLeastUntold))) return {};
+  if (!memory.decide(size.likelihood, watch.suspected ? kLeastSuspected : kLeastLikelihood)) return {};
   // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
   return {size.stddev * size.stddev, sums.takeOut(root, noise)};

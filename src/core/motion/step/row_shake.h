@@ -30,9 +30,13 @@ class ShakeMemory {
   /// Instead of add(), for a pair without a sign of shake.
   void fade() { add({}); }
   Size likeliest() const;
+  /// Whether that is enough. What was found in the pair before needs half as much. least: logarithm of the
+  /// likelihood ratio.
+  bool decide(double likelihood, double least);
 
  private:
   Likelihoods sums_ = {};
+  bool found_ = false;
 };
 
 /// Where to look for shake.
@@ -42,7 +46,9 @@ struct ShakeWatch {
   /// False while the shutter is taken as global, as nothing is told of it. Then most pairs show no sign of
   /// shake, and the likelihoods are not worked out for them.
   bool rolling = true;
-  bool told = true;  ///< whether the readout time is given
+  /// True while nobody knows whether rows take their time or shake: nothing is told of the shutter, and an
+  /// estimate has just begun, or not yet.
+  bool suspected = false;
 };
 
 /// Shapes over the nodes that shake around one frequency can have. Shake is smooth over the nodes, so a few

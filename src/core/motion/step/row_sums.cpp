@@ -45,7 +45,7 @@ Vector9d RowSums::takeOut(const Eigen::MatrixXd& root, double noise) {
   by_time.information -= with_time.dot(of_time);
   by_time.with_motion -= with_motion.transpose() * of_time;
   by_time.right -= with_time.dot(of_score) + by_time.with_motion.dot(step);
-  squares -= score.dot(of_score);
+  squares += pull.dot(step) - score.dot(of_score);
   with_motion -= rotation * of_motion;
   score -= rotation * of_score + with_motion * step;
   with_time -= rotation * of_time;

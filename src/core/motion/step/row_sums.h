@@ -32,7 +32,7 @@ struct RowSums {
   Eigen::MatrixXd rotation;     ///< information on the rotations
   Eigen::MatrixXd with_motion;  ///< their products with the motion
   Eigen::VectorXd score, with_time;
-  double squares = 0;  ///< weighted sum of squared residuals over their stddevs
+  double squares = 0;  ///< weighted sum of squared residuals over their stddevs; exact without a prior
   int count = 0;       ///< number of matches
   MotionUnknown motion;
   SumsByTime by_time;

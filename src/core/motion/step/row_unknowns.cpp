@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 namespace uav_landing {
 namespace {
@@ -48,10 +49,33 @@ std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalM
 
 // Root of the covariance of the nodes' rotations, when the whole readout has a turn of this covariance.
 Eigen::MatrixXd rootOfTurn(const std::vector<RowNode>& nodes, const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d root = covariance.llt().matrixL();
+  // A covariance of a lower rank has no exact root of this kind.
+  const double little = 1e-6 * covariance.trace();
+  const Eigen::Matrix3d root = (covariance + little * Eigen::Matrix3d::Identity()).llt().matrixL();
   Eigen::MatrixXd all(3 * nodes.size(), 3);
   for (size_t i = 0; i < nodes.size(); ++i) all.middleRows<3>(3 * i) = nodes[i].share * root;
   return all;
+}
+
+// Rotations of the nodes that an error of the delay makes, for 1 s. Q: from now to then.
+Eigen::VectorXd turnsByDelay(const std::vector<RowNode>& nodes, const DelayDoubt& delay,
+                             const Eigen::Matrix3d& Q) {
+  const auto byDelay = [](const GyroTurn& gyro, double seconds) -> Eigen::Vector3d {
+    return gyro.rows->rateAt(seconds + gyro.late) - gyro.rows->rateAt(gyro.late);
+  };
+  Eigen::VectorXd turns(3 * nodes.size());
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    const double seconds = nodes[i].share * delay.readout;
+    turns.segment<3>(3 * i) = byDelay(delay.then, seconds) - Q * byDelay(delay.now, seconds);
+  }
+  return turns;
+}
+
+DelayEffect effectOf(const RowSums& sums, const Eigen::VectorXd& turns) {
+  const Vector9d with_motion = sums.with_motion.transpose() * turns;
+  return {
+      turns.dot(sums.rotation * turns) - with_motion.dot(sums.motion.information.ldlt().solve(with_motion)),
+      turns.dot(sums.score)};
 }
 
 }  // namespace
@@ -69,6 +93,11 @@ RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatc
   if (nodes.empty()) return found;
   RowSums sums(nodes, fitted.motion, found.by_time);
   if (!doubt.turn.isZero(0)) found.step = sums.takeOut(rootOfTurn(nodes, doubt.turn));
+  if (doubt.delay.variance > 0) {
+    const Eigen::VectorXd turns = turnsByDelay(nodes, doubt.delay, fitted.linearised.Q);
+    found.delay = effectOf(sums, turns);
+    found.step += sums.takeOut(std::sqrt(doubt.delay.variance) * turns);
+  }
   found.without_shake = sums.motion.information;
   found.shake = findRowShake(doubt.shake, memory.shapes, sums);
   found.step += found.shake.step;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "geometry/stamp_map.h"
 #include "motion/matching/temporal_match.h"
 #include "motion/step/motion_rows.h"
 #include "motion/step/motion_state.h"
@@ -19,6 +20,19 @@ struct MotionMemory {
   ShakeShapes shapes;
 };
 
+/// Error of the delay of an inertial sensor that tells the turns between rows.
+struct DelayDoubt {
+  double variance = 0;  ///< s^2; 0: there is no such sensor
+  GyroTurn then, now;   ///< in the frames of their images
+  double readout = 0;   ///< time of all rows, s
+};
+
+/// What the matches say about that error.
+struct DelayEffect {
+  double information = 0;  ///< 1/s^2
+  double score = 0;        ///< information times the error, 1/s
+};
+
 /// Possible errors of a motion, because rows are exposed one after the other.
 struct RowDoubt {
   ShakeWatch shake;
@@ -27,14 +41,16 @@ struct RowDoubt {
   /// Covariance of a turn over a whole readout that nothing has accounted for, rad^2. It grows in proportion
   /// to the time of the row. The camera turns faster or slower than it was thought to.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
+  DelayDoubt delay = {};
 };
 
 /// Additional unknowns of a motion, because rows are exposed one after the other.
 struct RowUnknowns {
   bool has_time = false;   ///< whether a readout time is estimated, so that matches have by_readout
-  SumsByTime by_time;      ///< sums of the readout time, reduced by turn and shake
-  Matrix9d information;    ///< information on the motion, reduced by turn and shake
-  Matrix9d without_shake;  ///< the same, reduced by the turn alone
+  SumsByTime by_time;      ///< sums of the readout time, reduced by turn, delay and shake
+  Matrix9d information;    ///< information on the motion, reduced by turn, delay and shake
+  Matrix9d without_shake;  ///< the same, not reduced by the shake
+  DelayEffect delay;
   RowShake shake;
   Vector9d step = Vector9d::Zero();  ///< change of the motion to the one that fits best with all of them
 };

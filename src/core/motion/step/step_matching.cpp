@@ -51,14 +51,14 @@ MotionOverGround StepMatching::overGround(const StepImages& step, const CameraMo
   MotionOverGround over_ground{motion, step.normal.vector()};
   if (times == nullptr || times->atOnce() || !(step.duration > 0)) return over_ground;
   const double height_then = 1 + step.normal.vector().dot(motion.t);
-  const StepEnds ends = step.turns.ends(motion, step.duration, height_then);
+  const StepEnds ends = step.rates.ends(motion, step.duration, height_then);
   over_ground.rows = {times, ends.now, ends.then};
   return over_ground;
 }
 
 MotionPrior StepMatching::priorOf(const StepImages& step, const CameraMotion& start,
                                   const RotationPrior* rotation) const {
-  return {start, step.normal, rotation, {step.shake, step.doubt.normal_by_time, step.turn_doubt}};
+  return {start, step.normal, rotation, step.row_doubt};
 }
 
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,
@@ -71,6 +71,18 @@ Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const Ca
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
   return estimateMotion(rig_, matches, priorOf(step, start, nullptr), fewest, step.memory.motion);
+}
+
+bool StepMatching::carryRowsAlike(const StepImages& step, const CameraMotion& a,
+                                  const CameraMotion& b) const {
+  constexpr double kAlike = 0.3;  // sigma
+  const auto uneven = [&](const CameraMotion& motion) -> Eigen::Vector3d {
+    const StepEnds ends = step.rates.ends(motion, step.duration, 1);
+    return ends.now.w - ends.then.w;
+  };
+  const double readout = step.doubt.times != nullptr ? step.doubt.time : step.times->readoutTime();
+  const double turn = readout * readout * (uneven(a) - uneven(b)).squaredNorm();
+  return turn <= kAlike * kAlike * step.row_doubt.turn.trace();
 }
 
 double StepMatching::likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,

@@ -8,7 +8,7 @@
 #include "motion/matching/temporal_matching.h"
 #include "motion/step/ego_motion.h"
 #include "motion/step/readout_shift.h"
-#include "motion/step/turn_history.h"
+#include "motion/step/row_rates.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
@@ -32,15 +32,14 @@ struct StepImages {
   double duration;                            ///< time between the two images, s
   const std::vector<TrackedCorner>& corners;  ///< of the image now
   MotionSearchMemory& memory;
-  const TurnHistory& turns;                 ///< up to the image then
+  const RowRates& rates;                    ///< for this step
   GroundNormal normal;                      ///< of the ground now
   const RotationPrior* rotation = nullptr;  ///< from an inertial sensor; null: not known
   bool regular = false;  ///< the prediction still holds: hardly longer than the last step (see Steadiness)
   SearchTime time = SearchTime::kAmple;
-  const RowTimes* times = nullptr;                       ///< row times of the left image
-  ShakeWatch shake = {};                                 ///< over frame steps
-  ReadoutDoubt doubt = {};                               ///< when the readout time is not given
-  Eigen::Matrix3d turn_doubt = Eigen::Matrix3d::Zero();  ///< see RowDoubt::turn
+  const RowTimes* times = nullptr;  ///< row times of the left image
+  ReadoutDoubt doubt = {};          ///< when the readout time is not given
+  RowDoubt row_doubt = {};
 };
 
 /// Follows corners over a step, starting where a motion predicts them, and estimates the motion from the
@@ -65,6 +64,9 @@ class StepMatching {
   /// matches that must agree.
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
                                     const std::vector<TemporalMatch>& matches, int fewest) const;
+  /// Whether both motions carry rows to the stamps by turns that are alike, compared with what the turns may
+  /// be off by.
+  bool carryRowsAlike(const StepImages& step, const CameraMotion& a, const CameraMotion& b) const;
   /// Similarity of the corners to the places where the motion puts them; see likenessOverTime().
   double likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,
                   const CameraMotion& motion) const;

@@ -41,16 +41,21 @@ bool StepSearch::isGood(const Expected<MotionEstimate>& estimate,
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           const std::vector<CameraMotion>& predictions,
                                           std::vector<TemporalMatch>& matches) {
-  const Expected<MotionEstimate> found = findMotion(step, predictions, matches);
-  if (!found) return found;
-  if (step.doubt.time != 0) {
-    matching_.shiftByReadout(step, found->motion, matches);
-    return matching_.estimate(step, found->motion, matches, min_matches_);
-  }
-  if (step.times == nullptr || step.times->atOnce()) return found;
+  Expected<MotionEstimate> found = findMotion(step, predictions, matches);
+  const bool given = step.times != nullptr && !step.times->atOnce();
+  if (!given && step.doubt.time == 0) return found;
   // Rows were carried to the stamps with the predicted motion, which is not exactly the one that was found.
-  matches = matching_.match(step, step.corners, found->motion, 0, std::move(matches));
-  return matching_.estimate(step, found->motion, matches, min_matches_);
+  constexpr int kMostPasses = 3;
+  for (int pass = 0; found && pass < kMostPasses; ++pass) {
+    const CameraMotion before = found->motion;
+    if (given)
+      matches = matching_.match(step, step.corners, before, 0, std::move(matches));
+    else
+      matching_.shiftByReadout(step, before, matches);
+    found = matching_.estimate(step, before, matches, min_matches_);
+    if (found && matching_.carryRowsAlike(step, before, found->motion)) break;
+  }
+  return found;
 }
 
 Expected<MotionEstimate> StepSearch::findMotion(const StepImages& step,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/steadiness.h"
 #include "estimation/aircraft.h"
 #include "geometry/rotation.h"
 
@@ -28,29 +29,40 @@ RowMotion derivatives(const std::vector<double>& times, std::vector<Eigen::Vecto
   return rate;
 }
 
+bool alike(double a, double b) { return std::max(a, b) < Steadiness::kLongestRegular * std::min(a, b); }
+
 }  // namespace
 
-bool TurnHistory::Scatter::isTelling() const {
-  constexpr double kFewest = 3;
-  return weight >= kFewest * kKept * kKept;
+void TurnHistory::Scatter::add(const Eigen::Vector3d& error) {
+  ++count;
+  weight = kKept * weight + 1;
+  sum = kKept * sum + error * error.transpose();
+}
+
+void TurnHistory::interrupt() { turned_ = {{0, Eigen::Vector3d::Zero()}}; }
+
+double TurnHistory::lastDuration() const {
+  return turned_.size() < 2 ? 0 : turned_.back().time - turned_[turned_.size() - 2].time;
+}
+
+// Error of degree 2, at the end of the step against its beginning, when the acceleration changes evenly.
+double TurnHistory::errorByJerk(double duration) const {
+  return duration * (duration + 2 * lastDuration()) / 6;
+}
+
+int TurnHistory::bestDegree() const {
+  // The rates carry the rows of the next step, so errors of the steps come back by them. The higher the
+  // degree, the larger they are then. So it has to be far better.
+  constexpr double kFarBetter = 0.25;  // of the squares
+  const int most = std::min(static_cast<int>(turned_.size()), kMostDegree);
+  if (most < kMostDegree) return most;
+  const Scatter &lower = scatters_[kMostDegree - 1], &higher = scatters_[kMostDegree];
+  const bool better =
+      lower.isTelling() && higher.isTelling() && higher.mean().trace() < kFarBetter * lower.mean().trace();
+  return better ? kMostDegree : kMostDegree - 1;
 }
 
 // The step itself is one more point than those of the stamps before.
-int TurnHistory::mostDegree() const { return std::min(static_cast<int>(turned_.size()), kMostDegree); }
-
-int TurnHistory::bestDegree() const {
-  // A higher degree has to be far better. The rates carry the rows of the next step, so errors of the steps
-  // come back by them, and the more so the higher the degree.
-  constexpr double kFarBetter = 0.25;  // of the squares
-  const int most = mostDegree();
-  int best = std::min(most, 2);
-  for (int degree = 1; degree <= most; ++degree)
-    if (scatters_[degree].isTelling() && scatters_[best].isTelling() &&
-        scatters_[degree].mean().trace() < (degree > best ? kFarBetter : 1) * scatters_[best].mean().trace())
-      best = degree;
-  return best;
-}
-
 StepEnds TurnHistory::turnBy(int degree, double duration, const Eigen::Vector3d& turn) const {
   const Turned& begin = turned_.back();
   std::vector<double> times = {begin.time + duration};
@@ -70,27 +82,36 @@ StepEnds TurnHistory::ends(const CameraMotion& step, double duration, double hei
 }
 
 Eigen::Matrix3d TurnHistory::doubt(double duration) const {
-  const Scatter& scatter = scatters_[bestDegree()];
-  if (turned_.size() == 1) return Eigen::Matrix3d::Zero();
-  constexpr double kUsual = aircraft::kTurnJerk / 2;
-  return std::pow(duration, 4) *
-         (weight_of_usual_ * kUsual * kUsual * Eigen::Matrix3d::Identity() + scatter.sum) /
+  const int degree = bestDegree();
+  const Scatter& scatter = scatters_[degree];
+  if (degree == 1) {
+    if (!scatter.isTelling()) return Eigen::Matrix3d::Zero();
+    return duration * duration * scatter.mean();
+  }
+  constexpr double kUsual = aircraft::kTurnJerk * aircraft::kTurnJerk;
+  // By the degree: noise of the steps is in the end minus the beginning more than in what the scatter sees.
+  // The variances' ratio follows from the coefficients for even steps.
+  constexpr std::array<double, kMostDegree + 1> kByNoise = {1, 1, 4.0 / 3, 2.9};
+  const double by_jerk = errorByJerk(std::max(duration, lastDuration()));
+  return kByNoise[degree] * by_jerk * by_jerk *
+         (weight_of_usual_ * kUsual * Eigen::Matrix3d::Identity() + scatter.sum) /
          (weight_of_usual_ + scatter.weight);
 }
 
 void TurnHistory::add(const CameraMotion& step, double duration) {
   const Eigen::Vector3d turn = rotationVector(step.R);
-  for (int degree = 1; degree <= mostDegree(); ++degree) {
+  const int known = static_cast<int>(turned_.size());
+  // Errors after an unusual step are unusual, too.
+  const bool tells = known > 1 && alike(duration, lastDuration());
+  for (int degree = 1; degree <= std::min(known, kMostDegree); ++degree) {
     const StepEnds ends = turnBy(degree, duration, turn);
-    if (degree < static_cast<int>(turned_.size())) {
-      const Eigen::Vector3d off = (ends.then.w - rates_[degree]) / (duration * duration);
-      Scatter& scatter = scatters_[degree];
-      scatter.weight = kKept * scatter.weight + 1;
-      scatter.sum = kKept * scatter.sum + off * off.transpose();
+    if (tells && degree < known) {
+      const Eigen::Vector3d error = ends.then.w - rates_[degree];
+      scatters_[degree].add(error / (degree == 1 ? duration : errorByJerk(duration)));
     }
     rates_[degree] = ends.now.w;
   }
-  if (turned_.size() > 1) weight_of_usual_ *= kKept;
+  if (tells) weight_of_usual_ *= kKept;
   turned_.push_back({turned_.back().time + duration, turned_.back().sum + turn});
   if (turned_.size() > kMostDegree + 1) turned_.pop_front();
 }
