@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "uav_landing/base/failure.h"
-#include "uav_landing/motion/row_turns.h"
+#include "uav_landing/geometry/row_turns.h"
 
 namespace uav_landing {
 

@@ -163,6 +163,8 @@ struct ApproachAngleResult {
     /// 1 sigma by which rows that move on their own (vibration) move the angle, and the largest one that the
     /// angle's variance covers; rad. Unknown where rig/readout_time is 0.
     double row_motion = kUnknown, row_motion_limit = kUnknown;
+    /// Whether rows move the angle by more than that. Such a motion tells no angle.
+    bool rowsMove() const { return row_motion > row_motion_limit; }
     /// Ground normal by what moves in the image, unit, and its covariance (rad^2, rank 2). It is independent
     /// of stereo except for the depth of points off the plane. Unknown when the motion does not show it.
     Eigen::Vector3d normal = Eigen::Vector3d::Constant(kUnknown);

@@ -6,7 +6,7 @@
 #include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/row_times.h"
-#include "uav_landing/motion/row_turns.h"
+#include "uav_landing/geometry/row_turns.h"
 
 namespace uav_landing {
 

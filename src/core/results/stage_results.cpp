@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "results/row_motion.h"
 
 namespace uav_landing {
 
@@ -50,7 +49,7 @@ std::string adviceOn(const ReadoutEstimate& readout) {
 }
 
 std::string adviceOnImu(const ApproachAngleResult& result) {
-  if (!rowsMove(result.step) && !rowsMove(result.window)) return "";
+  if (!result.step.rowsMove() && !result.window.rowsMove()) return "";
   return result.imu.rows_failure.message();
 }
 

@@ -172,7 +172,7 @@ struct ApproachAngleStage::Implementation {
   void learnReadout(const MotionTracker::Result& motion) {
     if (readout_time) {
       if (motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
-    } else if (!model.left_unit_times.atOnce() && (rowsMove(motion.step) || rowsMove(motion.window))) {
+    } else if (!model.left_unit_times.atOnce() && (motion.step.rowsMove() || motion.window.rowsMove())) {
       readout_time.emplace(ReadoutFilter::kGlobalAfterSign);
       tracker.forgetRows();
     }

@@ -38,7 +38,7 @@ PathDoubt::PathDoubt(const KalmanHeightParameters& parameters)
 
 double PathDoubt::variance(const PairInput& in, const Ground& ground,
                            const ApproachAngleResult::Motion& motion) const {
-  if (rowsMove(motion)) return kAnyAngle * kAnyAngle;
+  if (motion.rowsMove()) return kAnyAngle * kAnyAngle;
   const std::optional<GroundNormal> used = normalOfAngle(in.approach, motion);
   if (!used) return 0;
   double variance = 0;

@@ -136,6 +136,7 @@ void MotionTracker::reset() {
 
 void MotionTracker::forgetRows() {
   step_shake_ = window_shake_ = {};
+  shaken_ = false;
   filter_.reset();
 }
 
@@ -345,7 +346,7 @@ ApproachAngleResult::Motion MotionTracker::describe(
   angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
            angleByReadout(*estimate, readout)};
   if (mayRoll()) setRowMotion(*estimate, motion);
-  angle->shaken = rowsMove(motion);
+  angle->shaken = motion.rowsMove();
   if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;
 }
@@ -363,8 +364,10 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;
-  if (step.shaken || (result.window_angle && result.window_angle->shaken))
-    result.window.angle_variance = kAnyAngle * kAnyAngle;
+  const bool shaken = step.shaken || (result.window_angle && result.window_angle->shaken);
+  // One pair may not see vibration that the one before saw.
+  if (shaken || shaken_) result.window.angle_variance = kAnyAngle * kAnyAngle;
+  shaken_ = shaken;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {

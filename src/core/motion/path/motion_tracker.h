@@ -123,6 +123,7 @@ class MotionTracker {
   double last_sink_ = 0;      // n.t of last_step_, in heights at its end
   RowRates rates_;
   ShakeMemory step_shake_, window_shake_;
+  bool shaken_ = false;  // rows shook in the pair before
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
   double last_rate_stddev_ = 0;  // of the window's angle, rad/s

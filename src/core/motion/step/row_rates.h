@@ -7,7 +7,7 @@
 #include "motion/matching/camera_motion.h"
 #include "motion/step/row_unknowns.h"
 #include "motion/step/turn_history.h"
-#include "uav_landing/motion/row_turns.h"
+#include "uav_landing/geometry/row_turns.h"
 #include "uav_landing/results/attitude_prior.h"
 
 namespace uav_landing {

@@ -131,11 +131,6 @@ ShakeMemory::Size ShakeMemory::likeliest() const {
   return best;
 }
 
-bool ShakeMemory::decide(double likelihood, double least) {
-  found_ = likelihood > (found_ ? 0.5 : 1) * least;
-  return found_;
-}
-
 const ShakeShapes::Roots& ShakeShapes::of(Eigen::Index nodes) {
   if (roots_[0].rows() == nodes) return roots_;
   for (size_t i = 0; i < roots_.size(); ++i) roots_[i] = shapesOf(nodes, ShakeMemory::kCycles[i]);
@@ -161,7 +156,7 @@ RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sum
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!memory.decide(size.likelihood, watch.suspected ? kLeastSuspected : kLeastLikelihood)) return {};
+  if (!(size.likelihood > (watch.suspected ? kLeastSuspected : kLeastLikelihood))) return {};
   // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
   return {size.stddev * size.stddev, sums.takeOut(root, noise)};

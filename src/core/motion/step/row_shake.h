@@ -30,13 +30,9 @@ class ShakeMemory {
   /// Instead of add(), for a pair without a sign of shake.
   void fade() { add({}); }
   Size likeliest() const;
-  /// Whether that is enough. What was found in the pair before needs half as much. least: logarithm of the
-  /// likelihood ratio.
-  bool decide(double likelihood, double least);
 
  private:
   Likelihoods sums_ = {};
-  bool found_ = false;
 };
 
 /// Where to look for shake.

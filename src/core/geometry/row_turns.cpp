@@ -1,4 +1,4 @@
-#include "uav_landing/motion/row_turns.h"
+#include "uav_landing/geometry/row_turns.h"
 
 #include <algorithm>
 #include <cmath>
