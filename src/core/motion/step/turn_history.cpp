@@ -93,8 +93,8 @@ Eigen::Matrix3d TurnHistory::doubt(double duration) const {
   // The variances' ratio follows from the coefficients for even steps.
   constexpr std::array<double, kMostDegree + 1> kByNoise = {1, 1, 4.0 / 3, 2.9};
   const double by_jerk = errorByJerk(std::max(duration, lastDuration()));
-  return kByNoise[degree] * by_jerk * by_jerk *
-         (weight_of_usual_ * kUsual * Eigen::Matrix3d::Identity() + scatter.sum) /
+  return by_jerk * by_jerk *
+         (weight_of_usual_ * kUsual * Eigen::Matrix3d::Identity() + kByNoise[degree] * scatter.sum) /
          (weight_of_usual_ + scatter.weight);
 }
 
