@@ -215,10 +215,10 @@ class ApproachAngleNodelet : public StageNodelet {
     imu_reason_ = imu.failure.message();
     imu_use_ = !imu.failure ? "used" : imu.hasRotation() ? "rotation only: " + imu_reason_ : imu_reason_;
     imu_rows_ = imu.rows ? "used" : imu.rows_failure.message();
-    const std::string rows = adviceOnImu(result);
-    if (rows.empty()) return;
+    const std::string advice = adviceOnImu(result);
+    if (advice.empty()) return;
     imu_unused_ = true;
-    imu_reason_ = "within images, whose rows move: " + rows;
+    imu_reason_ = advice;
   }
 
   ReadoutEstimate readout_;  // of the last pair, for the diagnostics

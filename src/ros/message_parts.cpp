@@ -81,6 +81,7 @@ Motion toMessage(const ApproachAngleResult::Motion& motion) {
   message.inliers = static_cast<uint32_t>(motion.inliers);
   toArray(motion.rotation, message.rotation);
   toArray(motion.translation_over_height, message.translation_over_height);
+  toArray(motion.turn_rate, message.turn_rate);
   toArray(motion.covariance, message.covariance);
   message.approach_angle = motion.angle;
   message.approach_angle_variance = motion.angle_variance;
@@ -99,6 +100,7 @@ ApproachAngleResult::Motion toResult(const Motion& message) {
   motion.inliers = static_cast<int>(message.inliers);
   fromArray(message.rotation, motion.rotation);
   fromArray(message.translation_over_height, motion.translation_over_height);
+  fromArray(message.turn_rate, motion.turn_rate);
   fromArray(message.normal, motion.normal);
   fromArray(message.normal_covariance, motion.normal_covariance);
   fromArray(message.covariance, motion.covariance);

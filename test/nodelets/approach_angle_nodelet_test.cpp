@@ -194,8 +194,16 @@ class ImuTest : public ApproachAngleNodeletTest {
     message.linear_acceleration_covariance[0] = -1;
     return message;
   }
-  void publishImu(double from, double to) {
-    for (int i = 0; i <= std::lround((to - from) / 0.01); ++i) imu_.publish(message(from + 0.01 * i));
+  void publishImu(double from, double to, double period = 0.01) {
+    for (int i = 0; i <= std::lround((to - from) / period); ++i) imu_.publish(message(from + period * i));
+  }
+  /// Whether the diagnostics had this value, or one that begins with it.
+  bool said(const std::string& key, const std::string& beginning) const {
+    for (const auto& array : diagnostics_.messages())
+      for (const auto& status : array->status)
+        for (const auto& value : status.values)
+          if (value.key == key && value.value.rfind(beginning, 0) == 0) return true;
+    return false;
   }
   ApproachAngle resultOf(double t) {
     EXPECT_TRUE(output_->waitFor([t](const auto& a) { return a.header.stamp == PairPublisher::stampOf(t); }));
@@ -215,25 +223,18 @@ class ImuTest : public ApproachAngleNodeletTest {
 
   ros::Publisher imu_ = handle_.advertise<sensor_msgs::Imu>("/imu/data", 1000);
   ros::Publisher tf_ = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, true);
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics_{"/diagnostics"};
 };
 
 TEST_F(ImuTest, DiagnosticsSayWhatItIsUsedFor) {
   setParameter("approach_angle", "diagnostic_period", 0.2);
-  Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
-  const auto said = [&](const std::string& use) {
-    for (const auto& array : diagnostics.messages())
-      for (const auto& status : array->status)
-        for (const auto& value : status.values)
-          if (value.key == "imu" && value.value.rfind(use, 0) == 0) return true;
-    return false;
-  };
   startWithImu();
-  EXPECT_TRUE(eventually([&] { return said("no pair yet"); }));
-  EXPECT_FALSE(said("used"));
+  EXPECT_TRUE(eventually([&] { return said("imu", "no pair yet"); }));
+  EXPECT_FALSE(said("imu", "used"));
   publishMounting("imu_link");
   double t = 0;
   ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
-  EXPECT_TRUE(eventually([&] { return said("used"); }));
+  EXPECT_TRUE(eventually([&] { return said("imu", "used"); }));
   EXPECT_TRUE(eventually([&] {
     for (int i = 1; i <= 3; ++i) {
       sensor_msgs::Imu gyro = message(t + 0.01 * i);
@@ -241,9 +242,30 @@ TEST_F(ImuTest, DiagnosticsSayWhatItIsUsedFor) {
       imu_.publish(gyro);
     }
     publishPair(t += 0.02);
-    return resultOf(t).imu.reason.empty() || said("rotation only: ");
+    return resultOf(t).imu.reason.empty() || said("imu", "rotation only: ");
   })) << wholeLog();
-  EXPECT_TRUE(eventually([&] { return said("rotation only: "); }));
+  EXPECT_TRUE(eventually([&] { return said("imu", "rotation only: "); }));
+}
+
+TEST_F(ImuTest, DiagnosticsSayWhetherItTellsTheTurnsBetweenRows) {
+  constexpr double kReadout = 0.01;  // s
+  setParameter("approach_angle", "diagnostic_period", 0.2);
+  setParameter("rig", "readout_time", kReadout);
+  startWithImu();
+  publishMounting("imu_link");
+  double t = 0;
+  const auto saidAfterPairs = [&](double period, const std::string& beginning) {
+    return eventually([&] {
+      publishImu(t, t + 0.02 + kReadout, period);
+      publishPair(t += 0.02);
+      resultOf(t);
+      return said("imu within images", beginning);
+    });
+  };
+  EXPECT_TRUE(
+      saidAfterPairs(0.01, "timeout: the imu's messages are up to 10 ms apart while rows are exposed"));
+  EXPECT_FALSE(said("imu within images", "used"));
+  EXPECT_TRUE(saidAfterPairs(0.0025, "used"));
 }
 
 TEST_F(ImuTest, GivesTheNormalAndTheRotationOfEachPair) {

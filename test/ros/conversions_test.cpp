@@ -56,6 +56,7 @@ ApproachAngleResult::Motion distinctMotion() {
   motion.inliers = 11;
   fill(motion.rotation);
   fill(motion.translation_over_height);
+  fill(motion.turn_rate);
   fill(motion.covariance);
   motion.angle = next();
   motion.angle_variance = next();
@@ -73,6 +74,7 @@ void expectEqual(const ApproachAngleResult::Motion& a, const ApproachAngleResult
   EXPECT_EQ(a.inliers, b.inliers);
   EXPECT_EQ(a.rotation, b.rotation);
   EXPECT_EQ(a.translation_over_height, b.translation_over_height);
+  EXPECT_EQ(a.turn_rate, b.turn_rate);
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.angle, b.angle);
   EXPECT_EQ(a.angle_variance, b.angle_variance);

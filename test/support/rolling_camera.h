@@ -49,6 +49,20 @@ inline CameraCalibration calibrationOf(const StereoRig& rig, bool right = false)
   return c;
 }
 
+/// Where a rolling shutter whose middle row has the stamp sees a point of the world: in the row that has the
+/// time at which it is there. poseAt: of a time.
+template <class PoseAt>
+Eigen::Vector2d rollingPixel(const PoseAt& poseAt, const StereoRig& rig, double stamp, double readout,
+                             const Eigen::Vector3d& world) {
+  constexpr int kSteps = 50;
+  Eigen::Vector2d pixel(0, 0.5 * rig.size.height);
+  for (int i = 0; i < kSteps; ++i) {
+    const Pose pose = poseAt(stamp + ((pixel.y() + 0.5) / rig.size.height - 0.5) * readout);
+    pixel = rig.project(pose.seen(world - pose.position));
+  }
+  return pixel;
+}
+
 /// What a rolling shutter sees whose middle row has the stamp: each row from where the camera is then.
 /// poseAt: of a time.
 template <class PoseAt>

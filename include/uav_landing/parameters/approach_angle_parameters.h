@@ -126,8 +126,10 @@ struct ApproachAngleParameters {
     v.number("imu_delay", imu_delay, -1.0, 1.0, "s",
              "latency of the imu: by how much a message's stamp is later than that of an image of "
              "the same moment");
-    v.number("imu_wait", imu_wait, 0.0, 1.0, "s",
-             "a pair waits this long for the imu message after it, then goes on by those before it");
+    v.number(
+        "imu_wait", imu_wait, 0.0, 1.0, "s",
+        "a pair waits this long for the imu message after it, or after its last row, then goes on by those "
+        "before it");
     v.number("imu_max_gap", imu_max_gap, 0.001, 1.0, "s",
              "longest time between two imu messages, or after the newest one, that is bridged");
     v.number("imu_attitude_stddev_deg", imu_attitude_stddev_deg, 0.01, 20.0, "deg",

@@ -157,6 +157,9 @@ struct ApproachAngleResult {
     Eigen::Vector3d rotation = Eigen::Vector3d::Constant(kUnknown);
     /// Movement of the camera in the current frame, over the current height: t / h.
     Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
+    /// Rate of turn now, rad/s, in the sense of `rotation`. Not known without row times, in the window, and
+    /// where rows move on their own.
+    Eigen::Vector3d turn_rate = Eigen::Vector3d::Constant(kUnknown);
     Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
@@ -225,11 +228,11 @@ struct ApproachAngleResult {
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
   Sight sight;
-  /// Estimate by the pairs before. All numbers of this pair are corrected by it, and their claims contain its
-  /// error.
   /// Error of the plane of stereo by turns between its rows, which an inertial sensor measured, 1/m. It is to
   /// be taken off.
   Eigen::Vector3d plane_by_turns = Eigen::Vector3d::Zero();
+  /// Estimate by the pairs before. All numbers of this pair are corrected by it, and their claims contain its
+  /// error.
   ReadoutEstimate readout;
   /// Prior of an inertial sensor. The slope of the ground is in the normal's covariance.
   AttitudePrior imu;

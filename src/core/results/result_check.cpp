@@ -91,8 +91,10 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
     motion.duration = kUnknown;
     motion.rotation.setConstant(kUnknown);
     motion.translation_over_height.setConstant(kUnknown);
+    motion.turn_rate.setConstant(kUnknown);
     motion.covariance.setConstant(kUnknown);
   }
+  if (!(motion.turn_rate.norm() <= aircraft::kFastestTurnRate)) motion.turn_rate.setConstant(kUnknown);
   if (motion.failure || !within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
     motion.angle = motion.angle_variance = kUnknown;
   if (motion.failure || !(motion.row_motion >= 0 && motion.row_motion <= M_PI) ||

@@ -50,7 +50,8 @@ std::string adviceOn(const ReadoutEstimate& readout) {
 
 std::string adviceOnImu(const ApproachAngleResult& result) {
   if (!result.step.rowsMove() && !result.window.rowsMove()) return "";
-  return result.imu.rows_failure.message();
+  if (!result.imu.rows_failure) return "";
+  return "within images, whose rows move: " + result.imu.rows_failure.message();
 }
 
 }  // namespace uav_landing

@@ -81,7 +81,12 @@ Eigen::Vector3d planeByTurns(const StereoRig& rig, const RowTimes& times, const 
 
 void takeOff(const Eigen::Vector3d& by_turns, StereoDepthResult& stereo) {
   constexpr double kLeft = 0.3;  // share of it that stays
+  constexpr double kMost = 0.1;  // of the plane: vibration is far smaller
   if (by_turns.isZero(0) || !stereo.plane.valid()) return;
+  if (by_turns.norm() > kMost * stereo.plane.g.norm()) {
+    addToPlane(by_turns * by_turns.transpose(), stereo);
+    return;
+  }
   stereo.plane.g -= by_turns;
   if (stereo.below.valid()) stereo.below.g -= by_turns;
   addToPlane(kLeft * kLeft * by_turns * by_turns.transpose(), stereo);
@@ -100,8 +105,8 @@ void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& 
     return;
   }
   const Eigen::Vector3d g = stereo.plane.g;
-  carryPlane(RowMotion{step.rotation / step.duration, step.translation_over_height / step.duration}, readout,
-             stereo);
+  const Eigen::Vector3d rate = step.turn_rate.allFinite() ? step.turn_rate : step.rotation / step.duration;
+  carryPlane(RowMotion{rate, step.translation_over_height / step.duration}, readout, stereo);
   Eigen::Matrix<double, 3, 6> by_step;
   by_step << -crossMatrix(g), g * g.normalized().transpose();
   by_step /= step.duration;

@@ -28,7 +28,7 @@ Eigen::Vector3d planeByTurns(const StereoRig& rig, const RowTimes& times, const 
                              const StereoDepthResult& stereo);
 
 /// Takes that off the plane. Points stand for all pixels that made the plane, so a part of it stays as
-/// uncertainty.
+/// uncertainty. All of it does where it is too large for vibration.
 void takeOff(const Eigen::Vector3d& by_turns, StereoDepthResult& stereo);
 
 /// The same by the rate of stereo alone. Nothing changes when the readout time is given.

@@ -15,8 +15,8 @@
 #include "motion/path/motion_corners.h"
 #include "motion/path/motion_tracker.h"
 #include "motion/step/readout_filter.h"
+#include "results/any_angle.h"
 #include "results/result_check.h"
-#include "results/row_motion.h"
 #include "rig/plane_rate.h"
 #include "runway/direction/runway_direction.h"
 #include "runway/position/runway_tracker.h"
@@ -84,6 +84,8 @@ struct ApproachAngleStage::Implementation {
     result.stamp = stamp;
     result.readout = currentReadout();
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
+    // The rows of a repeated image were exposed at another time.
+    if (repeated(stereo)) result.imu.rows.reset();
     result.failure = checkPair(model, left, right);
     const Failure too_long = readout.follow(stamp);
     if (!result.failure) result.failure = too_long;

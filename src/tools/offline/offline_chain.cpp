@@ -87,7 +87,7 @@ void OfflineChain::process(const Waiting& pair) {
   const Failure problem = run(pair.left, pair.right, skew, imu);
   if (!problem) {
     if (const std::string advice = adviceOnImu(output_->approach); !advice.empty())
-      complainOfImu("imu: not used within images, whose rows move: " + advice);
+      complainOfImu("imu: not used " + advice);
     // Logged as by the nodelets, because a rig that is mounted wrongly gives no result on any pair.
     const Failure& mounting = output_->stereo.failure;
     if (mounting.reason == Reason::kInputInvalid || mounting.reason == Reason::kNegativeDisparity)

@@ -16,15 +16,8 @@ struct Scene {
   test::Pose now = poseAt(0);
   StampMap map{rig.K(), times, test::motionAt(0, poseAt), now.down()};
 
-  Eigen::Vector2d at(double t, const Eigen::Vector3d& world) const {
-    const test::Pose pose = poseAt(t);
-    return rig.project(pose.seen(world - pose.position));
-  }
-  /// Where a rolling shutter sees a point of the world: the row that has the time at which it is there.
   Eigen::Vector2d seen(const Eigen::Vector3d& world) const {
-    double t = 0;
-    for (int i = 0; i < 50; ++i) t = ((at(t, world).y() + 0.5) / rig.size.height - 0.5) * kReadout;
-    return at(t, world);
+    return test::rollingPixel(poseAt, rig, 0, kReadout, world);
   }
   Eigen::Vector3d onGround(double u, double v) const {
     const Eigen::Vector3d ray = now.worldFromOptical() * rig.ray(u, v);

@@ -30,7 +30,7 @@ struct Flight {
   StepMatching matching{rig, cv::Mat(rig.size, CV_8UC1, cv::Scalar(255)), parameters};
   FirstStepSearch search{false};
   MotionSearchMemory memory;
-  RowRates rates;
+  RowRates rates{1e-3};
 
   Pose at(double t) const {
     Pose pose;

@@ -21,12 +21,7 @@ constexpr double kPeriod = 0.05, kReadout = 0.012;  // s
 
 /// Where a camera with this readout time, the middle row at the stamp, sees a point of the ground.
 Eigen::Vector2d seenBy(double stamp, double readout, const Eigen::Vector3d& world) {
-  Eigen::Vector2d pixel(0, 0.5 * motionRig().size.height);
-  for (int i = 0; i < 20; ++i) {
-    const Pose pose = movingPose(stamp + ((pixel.y() + 0.5) / motionRig().size.height - 0.5) * readout);
-    pixel = motionRig().project(pose.seen(world - pose.position));
-  }
-  return pixel;
+  return test::rollingPixel(movingPose, motionRig(), stamp, readout, world);
 }
 
 /// Steady motion over one period, and the matches of it.

@@ -19,6 +19,7 @@ using test::motionRig;
 using test::Pose;
 
 constexpr double kPeriod = 0.05, kReadout = 0.03, kNoise = 0.08;  // s, s, px
+constexpr double kBias = 0.3 * kDegree;                           // rad/s
 
 /// A camera that glides level, with its pitch and roll vibrating.
 Pose vibratingPose(double t) {
@@ -47,12 +48,7 @@ AttitudePrior gyroAt(double stamp, double late, const Eigen::Vector3d& bias = Ei
 }
 
 Eigen::Vector2d seenBy(double stamp, const Eigen::Vector3d& world) {
-  Eigen::Vector2d pixel(0, 0.5 * motionRig().size.height);
-  for (int i = 0; i < 20; ++i) {
-    const Pose at = vibratingPose(stamp + ((pixel.y() + 0.5) / motionRig().size.height - 0.5) * kReadout);
-    pixel = motionRig().project(at.seen(world - at.position));
-  }
-  return pixel;
+  return test::rollingPixel(vibratingPose, motionRig(), stamp, kReadout, world);
 }
 
 /// The step up to a stamp, with matches as the rolling shutter makes them.
@@ -86,6 +82,7 @@ struct VibratingStep {
       matches.push_back(match);
     }
     RowDoubt doubt = rates.doubt(kPeriod, kReadout);
+    memory.begin();
     doubt.shake = {&times, &memory};
     MotionMemory work;
     return estimateMotion(motionRig(), matches,
@@ -101,7 +98,7 @@ struct Flown {
 /// late: error of the sensor's delay, s. heard: whether there is a sensor.
 Flown fly(double late, bool heard = true, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) {
   constexpr int kSteps = 60, kFirst = 30;
-  RowRates rates;
+  RowRates rates(kBias);
   ShakeMemory memory;
   Flown flown;
   for (int i = 0; i <= kSteps; ++i) {
@@ -153,7 +150,7 @@ TEST(RowRates, LearnTheBiasOfTheGyroscope) {
 }
 
 TEST(RowRates, AreThoseOfTheStepsWhereAnImageHasNoGyroscope) {
-  RowRates rates;
+  RowRates rates(kBias);
   rates.see(gyroAt(1, 0));
   rates.skip();
   const CameraMotion step{rotationMatrix(Eigen::Vector3d(0.01, 0, 0)), Eigen::Vector3d(0, 0, 0.1)};

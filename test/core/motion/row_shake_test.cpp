@@ -31,12 +31,7 @@ struct Vibration {
     return pose;
   }
   Eigen::Vector2d seen(double stamp, double readout, const Eigen::Vector3d& world) const {
-    Eigen::Vector2d pixel(0, 0.5 * motionRig().size.height);
-    for (int i = 0; i < 20; ++i) {
-      const Pose at = pose(stamp + ((pixel.y() + 0.5) / motionRig().size.height - 0.5) * readout);
-      pixel = motionRig().project(at.seen(world - at.position));
-    }
-    return pixel;
+    return test::rollingPixel([this](double t) { return pose(t); }, motionRig(), stamp, readout, world);
   }
 };
 
@@ -79,11 +74,12 @@ struct ShakenStep {
   Expected<MotionEstimate> estimate(ShakeMemory* memory, bool rolling, const Eigen::Vector3d& normal) const {
     constexpr double kSlope = 1e-4;  // rad
     MotionMemory work;
+    if (memory != nullptr) memory->begin();
     return estimateMotion(motionRig(), matches,
                           {{truth.movement.R, truth.t},
                            {normal, test::across(normal, kSlope)},
                            nullptr,
-                           {{&unitTimes(), memory, rolling, !rolling}, Eigen::Vector3d::Zero()}},
+                           {{&unitTimes(), memory, rolling}, Eigen::Vector3d::Zero()}},
                           20, work);
   }
   /// Error of the translation across the way, up and down, over its claimed standard deviation.
@@ -217,7 +213,53 @@ TEST(RowShake, IsForgottenWhenItEnds) {
     return found;
   };
   EXPECT_TRUE(isFound(0.05 * kDegree, 0, 20));
-  EXPECT_FALSE(isFound(0, 20, 200));
+  EXPECT_FALSE(isFound(0, 20, 120));
+}
+
+// A quiet second before vibration must not delay what tells of it.
+TEST(RowShake, IsFoundAtOnceAfterQuietPairs) {
+  ShakeMemory memory;
+  bool found = false;
+  for (int i = 0; i < 22; ++i) {
+    const ShakenStep step({i < 20 ? 0 : 0.1 * kDegree, 37, 0}, kPeriod * i, i);
+    const Expected<MotionEstimate> estimate = step.estimate(&memory);
+    ASSERT_TRUE(estimate) << i;
+    found = !estimate->of_shake.isZero(0);
+    EXPECT_EQ(found, i >= 20) << i;
+  }
+}
+
+// The camera turns faster than it was thought to while its rows are exposed.
+TEST(RowTurn, ThatNothingAccountsForIsClaimed) {
+  const Eigen::Vector3d rate = Eigen::Vector3d(1, 0.5, -2) * kDegree;  // rad/s
+  double squares = 0, squares_without = 0;
+  constexpr int kSteps = 20;
+  for (int i = 0; i < kSteps; ++i) {
+    ShakenStep step(Vibration(), kPeriod * i, i);
+    for (TemporalMatch& match : step.matches) {
+      const Eigen::Vector3d turn = kReadout * unitTimes().at(match.now.x(), match.now.y()) * rate;
+      match.now = motionRig().project(motionRig().ray(match.now.x(), match.now.y()) +
+                                      turn.cross(motionRig().ray(match.now.x(), match.now.y())));
+    }
+    const auto squareOf = [&](double claimed) {
+      RowDoubt doubt;
+      ShakeMemory memory;
+      doubt.shake = {&unitTimes(), &memory};
+      doubt.turn = claimed * claimed * kReadout * kReadout * Eigen::Matrix3d::Identity();
+      MotionMemory work;
+      const Expected<MotionEstimate> found = estimateMotion(motionRig(), step.matches,
+                                                            {{step.truth.movement.R, step.truth.t},
+                                                             {step.truth.n, test::across(step.truth.n, 1e-4)},
+                                                             nullptr,
+                                                             doubt},
+                                                            20, work);
+      return found ? std::pow(step.ratio(*found), 2) : 1e9;
+    };
+    squares += squareOf(rate.norm()) / kSteps;
+    squares_without += squareOf(0) / kSteps;
+  }
+  EXPECT_LT(std::sqrt(squares), 2);
+  EXPECT_GT(std::sqrt(squares_without), 3) << "the turn must matter";
 }
 
 }  // namespace

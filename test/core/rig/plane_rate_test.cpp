@@ -47,6 +47,15 @@ TEST(PlaneRate, OfABetterKnownMotionCorrectsThePlane) {
   EXPECT_LT((pair.plane.g - once).norm(), kSecondOrder * kPlane.norm()) << "the rate is taken in already";
 }
 
+TEST(PlaneRate, IsThatOfTheTurnAtTheStampWhereItIsKnown) {
+  StereoDepthResult pair = pairOf(kPlane, planeRate(PlaneVector(kPlane), kMotion));
+  ApproachAngleResult::Motion step = stepOf(0.05);
+  step.rotation *= 0.5;
+  step.turn_rate = kMotion.w;
+  carryPlane(step, {}, pair);
+  EXPECT_LT((pair.plane.g - kPlane).norm(), kSecondOrder * kPlane.norm());
+}
+
 TEST(PlaneRate, IsAsUncertainAsTheStep) {
   StereoDepthResult pair = pairOf(kPlane, planeRate(PlaneVector(kPlane), kMotion)), exact = pair;
   ApproachAngleResult::Motion step = stepOf(0.05);
@@ -152,6 +161,15 @@ TEST(PlaneRate, OfTurnsBetweenRowsIsTakenOffThePlane) {
   pair.points.resize(5);
   EXPECT_TRUE(planeByTurns(rig, times, turns, pair).isZero(0)) << "too few points tell nothing";
   EXPECT_TRUE(planeByTurns(rig, times, {}, pair).isZero(0));
+}
+
+TEST(PlaneRate, TooLargeForVibrationIsNotTakenOff) {
+  StereoDepthResult pair = pairOf(kPlane, Eigen::Vector3d::Zero());
+  const Eigen::Matrix3d before = pair.plane.covariance;
+  const Eigen::Vector3d off = 0.2 * kPlane;
+  takeOff(off, pair);
+  EXPECT_EQ(pair.plane.g, kPlane);
+  EXPECT_LT((pair.plane.covariance - before - off * off.transpose()).norm(), 1e-12);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/rotation.h"
-#include "results/row_motion.h"
+#include "results/any_angle.h"
 
 namespace uav_landing {
 namespace {

@@ -1,6 +1,5 @@
 #include "motion/path/motion_tracker.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,10 +10,8 @@
 #include "geometry/rotation.h"
 #include "image/input/image_check.h"
 #include "image/windows/corners.h"
-#include "motion/path/approach_angle.h"
 #include "motion/step/plane_proof.h"
-#include "motion/step/readout_filter.h"
-#include "results/row_motion.h"
+#include "results/any_angle.h"
 
 namespace uav_landing {
 namespace {
@@ -32,52 +29,6 @@ constexpr double kMostSunk = 0.5;
 // Tolerance of stamps for a frame to count as within the window, s.
 constexpr double kWindowSlack = 0.05;
 
-double sineOfAngle(const MotionEstimate& estimate) {
-  return estimate.normal.normalized().dot(estimate.motion.t.normalized());
-}
-
-// Gradient of n.t/|t| by t and n.
-Eigen::Matrix<double, 6, 1> sineGradient(const MotionEstimate& estimate) {
-  const Eigen::Vector3d& t = estimate.motion.t;
-  const Eigen::Vector3d n = estimate.normal.normalized();
-  const Eigen::Vector3d m = t.normalized();
-  const double sine = n.dot(m);
-  Eigen::Matrix<double, 6, 1> gradient;
-  gradient << (n - sine * m) / t.norm(), m - sine * n;
-  return gradient;
-}
-
-// Variance of the angle asin(n.t/|t|) from a covariance of t and n.
-double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
-  const double sine = sineOfAngle(estimate);
-  const Eigen::Matrix<double, 6, 1> gradient = sineGradient(estimate);
-  return gradient.dot(covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
-}
-
-// Effect of 1 sigma of an estimated readout time on the angle, rad.
-double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& readout) {
-  if (!readout.known()) return 0;
-  const double by_time = sineGradient(estimate).dot(estimate.readout.by_time.tail<6>());
-  return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
-}
-
-// Sets how much rows that move on their own move the angle. The size of the effect is known only roughly,
-// because the matches cannot tell a slow shake from a motion.
-void setRowMotion(const MotionEstimate& estimate, ApproachAngleResult::Motion& motion) {
-  constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
-  motion.row_motion = std::sqrt(angleVariance(estimate, estimate.of_shake));
-  motion.row_motion_limit = kSmallPart * std::sqrt(motion.angle_variance);
-}
-
-// Adds the error of an estimated readout time to the covariances.
-void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
-  if (!readout.known()) return;
-  const ReadoutEffect& effect = estimate.readout;
-  estimate.covariance += readout.variance * effect.by_time * effect.by_time.transpose();
-  estimate.own_normal_covariance +=
-      readout.variance * effect.own_normal_by_time * effect.own_normal_by_time.transpose();
-}
-
 // Rotation from the inertial sensor, if it covers exactly this step.
 std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
   constexpr double kStampRounding = 1e-3;
@@ -88,10 +39,6 @@ std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duratio
 // Least 1 sigma of the rate of the angle while no new image shows it, rad/s.
 constexpr double kLeastRate = 1 * M_PI / 180;
 
-double largestEigenvalue(const Eigen::Matrix3d& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
-}
-
 }  // namespace
 
 MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
@@ -101,6 +48,7 @@ MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameter
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
       parameters_(parameters),
       search_(rig_, mask_, parameters),
+      rates_(parameters.imu_rate_bias_deg * M_PI / 180),
       filter_(parameters.angle_window) {
   reset();
   spare_.resize(kUsualFrames);
@@ -129,28 +77,24 @@ void MotionTracker::reset() {
   search_.reset();
   forgetRows();
   last_rate_stddev_ = 0;
-  rates_ = {};
+  rates_ = RowRates(parameters_.imu_rate_bias_deg * M_PI / 180);
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
 
 void MotionTracker::forgetRows() {
   step_shake_ = window_shake_ = {};
-  shaken_ = false;
   filter_.reset();
 }
 
 ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditions& conditions) const {
   if (!conditions.readout.known()) return {};
-  return {&unit_times_, conditions.readout.time, seen.normal_by_readout};
+  return {&unit_times_, conditions.readout.time};
 }
 
 ShakeWatch MotionTracker::watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const {
   if (!mayRoll()) return {};
-  constexpr double kHardlyKnown = 0.75 * ReadoutFilter::kPriorStddev;  // s
-  const bool global = !readout.given() && !readout.known();
-  const bool suspected = global || readout.variance > kHardlyKnown * kHardlyKnown;
-  return {times_.atOnce() ? &unit_times_ : &times_, &memory, !global, suspected};
+  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known()};
 }
 
 RowDoubt MotionTracker::rowDoubt(double duration, ShakeMemory& memory, const GroundInView& seen,
@@ -160,6 +104,11 @@ RowDoubt MotionTracker::rowDoubt(double duration, ShakeMemory& memory, const Gro
   doubt.shake = watchOf(memory, readout);
   if (readout.known()) doubt.normal_by_readout = seen.normal_by_readout;
   return doubt;
+}
+
+MotionFacts MotionTracker::factsOf(double duration, const std::vector<TemporalMatch>& matches,
+                                   const ReadoutEstimate& readout) const {
+  return {duration, matches.size(), readout, mayRoll(), parameters_.min_motion};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -206,6 +155,8 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
     now = takeFrame(stamp, left);
   }
   rates_.see(conditions.imu);
+  step_shake_.begin();
+  window_shake_.begin();
   if (past_.empty()) {
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
@@ -250,8 +201,14 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
       estimate = tl::make_unexpected(failure);
     }
   }
-  result.step = describe(estimate, duration, step_matches_.size(), conditions.readout, result.step_angle);
+  const MotionDescription described =
+      describe(estimate, factsOf(duration, step_matches_, conditions.readout));
+  result.step = described.motion;
+  result.step_angle = described.angle;
   if (!estimate) return;
+  result.ends = rates_.ends(estimate->motion, duration, 1 + estimate->normal.dot(estimate->motion.t));
+  // Rows that move on their own disturb the turns from which the rates come.
+  if (mayRoll() && !result.step.rowsMove()) result.step.turn_rate = result.ends.now.w;
   result.step_estimate = *estimate;
   result.readout = estimate->readout;
   claimReadout(conditions.readout, *result.step_estimate);
@@ -293,7 +250,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     // Lengths are converted from units of the previous height to units of the height now.
     const double unit = 1 + seen.normal.vector().dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    const RowMotion motion = rates_.ends(step, result.step.duration, unit).now;
+    const RowMotion& motion = result.ends.now;
     const RowMotion motion_then = then.motion.value_or(motion);
     memory_.matching.spare = std::move(window_matches_);
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
@@ -309,46 +266,13 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
-    result.window =
-        describe(estimate, duration, window_matches_.size(), conditions.readout, result.window_angle);
+    const MotionDescription described =
+        describe(estimate, factsOf(duration, window_matches_, conditions.readout));
+    result.window = described.motion;
+    result.window_angle = described.angle;
     return;
   }
   result.window = result.step;
-}
-
-ApproachAngleResult::Motion MotionTracker::describe(
-    const Expected<MotionEstimate>& estimate, double duration, size_t matches, const ReadoutEstimate& readout,
-    std::optional<PathAngleFilter::Measurement>& angle) const {
-  ApproachAngleResult::Motion motion;
-  motion.duration = duration;
-  motion.matches = static_cast<int>(matches);
-  if (!estimate) {
-    motion.failure = estimate.error();
-    return motion;
-  }
-  motion.inliers = estimate->inlier_count;
-  motion.rotation = rotationVector(estimate->motion.R);
-  motion.translation_over_height = estimate->motion.t;
-  MotionEstimate claimed = *estimate;
-  claimReadout(readout, claimed);
-  motion.covariance = claimed.covariance.topLeftCorner<6, 6>();
-  motion.normal = claimed.own_normal;
-  motion.normal_covariance = claimed.own_normal_covariance;
-  const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
-  if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
-    motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};
-    return motion;
-  }
-  motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
-  motion.angle_variance = angleVariance(*estimate, claimed.covariance);
-  const double of_normal = angleVariance(*estimate, estimate->of_normal);
-  const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
-  angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
-           angleByReadout(*estimate, readout)};
-  if (mayRoll()) setRowMotion(*estimate, motion);
-  angle->shaken = motion.rowsMove();
-  if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
-  return motion;
 }
 
 // The chord's angle is half of its duration old. The published angle is the current one.
@@ -364,10 +288,8 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;
-  const bool shaken = step.shaken || (result.window_angle && result.window_angle->shaken);
-  // One pair may not see vibration that the one before saw.
-  if (shaken || shaken_) result.window.angle_variance = kAnyAngle * kAnyAngle;
-  shaken_ = shaken;
+  if (step.shaken || (result.window_angle && result.window_angle->shaken))
+    result.window.angle_variance = kAnyAngle * kAnyAngle;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {
@@ -387,12 +309,9 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   }
   now.motion.reset();
   if (result.step_estimate) {
-    const CameraMotion& step = result.step_estimate->motion;
-    const StepEnds ends =
-        rates_.ends(step, result.step.duration, 1 + result.step_estimate->normal.dot(step.t));
-    past_.back().motion = ends.then;
-    now.motion = ends.now;
-    rates_.add(step, result.step.duration, result.step_estimate->delay);
+    past_.back().motion = result.ends.then;
+    now.motion = result.ends.now;
+    rates_.add(result.step_estimate->motion, result.step.duration, result.step_estimate->delay);
   } else {
     rates_.skip();
   }

@@ -8,6 +8,7 @@
 #include "geometry/ground_normal.h"
 #include "image/windows/match_image.h"
 #include "motion/matching/temporal_matching.h"
+#include "motion/path/motion_description.h"
 #include "motion/path/path_angle_filter.h"
 #include "motion/step/ego_motion.h"
 #include "motion/step/step_search.h"
@@ -50,6 +51,7 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
+    StepEnds ends;          ///< of the step, when there is an estimate
     ReadoutEffect readout;  ///< of the frame step
     /// Motion of the step when its corners failed to prove that they are on a plane.
     std::optional<CameraMotion> unproven;
@@ -104,9 +106,8 @@ class MotionTracker {
                       Result& result);
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
-  ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
-                                       size_t matches, const ReadoutEstimate& readout,
-                                       std::optional<PathAngleFilter::Measurement>& angle) const;
+  MotionFacts factsOf(double duration, const std::vector<TemporalMatch>& matches,
+                      const ReadoutEstimate& readout) const;
 
   StereoRig rig_;
   RowTimes times_, unit_times_;
@@ -123,7 +124,6 @@ class MotionTracker {
   double last_sink_ = 0;      // n.t of last_step_, in heights at its end
   RowRates rates_;
   ShakeMemory step_shake_, window_shake_;
-  bool shaken_ = false;  // rows shook in the pair before
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
   double last_rate_stddev_ = 0;  // of the window's angle, rad/s

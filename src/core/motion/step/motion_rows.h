@@ -66,7 +66,7 @@ class MotionRows {
 
   /// Sums for the nodes of a rotation over the rows, after one more step. The first node is before the first
   /// match, the last one after the last match. shares: times of the matches as a share of the readout.
-  /// later: as above, or null when the readout time is no unknown. Call it after accumulate().
+  /// later: as above. It is null when the readout time is no unknown. Call it after accumulate().
   std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                 const MotionRows* later, double seconds) const;
 

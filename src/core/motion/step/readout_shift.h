@@ -14,17 +14,15 @@ namespace uav_landing {
 struct ReadoutDoubt {
   const RowTimes* times = nullptr;  ///< row times of the left image for a readout of 1 s
   double time = 0;                  ///< current estimate, s
-  /// Derivative of the ground normal now by the readout time, 1/s.
-  Eigen::Vector3d normal_by_time = Eigen::Vector3d::Zero();
 };
 
 /// Sets by_readout of the matches. Then it moves the matches to where they would be with all rows exposed at
 /// the stamps, according to the estimated time (s). The whole shift is applied to the place then. The effect
-/// is linear in the readout time as long as that is much shorter than the step. Turns that are not even make
-/// by_readout the mean effect up to this time, which is not quite the derivative.
+/// is linear in the readout time as long as that is much shorter than the step. Where the camera turns faster
+/// and faster, by_readout is the mean effect up to this time. That is not quite the derivative.
 ///
-/// over_ground: motion of the step, as far as it is known, with row times for a readout of 1 s. Call it again
-/// when the motion is known better; it takes back its earlier shift first.
+/// over_ground: motion of the step, as far as it is known. Its row times are for a readout of 1 s. Call it
+/// again when the motion is known better. It takes back its earlier shift first.
 void shiftByReadout(const StereoRig& rig, const MotionOverGround& over_ground, double time,
                     std::vector<TemporalMatch>& matches);
 

@@ -8,11 +8,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-constexpr double kBeforehand = 0.3 * kDegree;  // 1 sigma of the sensor's bias before any step, rad/s
-constexpr double kOfStep = 0.2 * kDegree;      // 1 sigma of the rate by the images over a step, rad/s
-constexpr double kLongestAhead = 0.1;          // s, for which an acceleration is taken to last
-constexpr double kKept = 0.98;                 // share of the sums that is left at the next step
+constexpr double kOfStep = 0.2 * M_PI / 180;  // 1 sigma of the rate by the images over a step, rad/s
+constexpr double kLongestAhead = 0.1;         // s, for which an acceleration is taken to last
+constexpr double kKept = 0.98;                // share of the sums that is left at the next step
 
 }  // namespace
 
@@ -21,13 +19,11 @@ void GyroBias::add(const Eigen::Vector3d& off) {
   sum_ = kKept * sum_ + off;
 }
 
-Eigen::Vector3d GyroBias::mean() const {
-  return sum_ / (steps_ + kOfStep * kOfStep / (kBeforehand * kBeforehand));
-}
+Eigen::Vector3d GyroBias::mean() const { return sum_ / (steps_ + stepsBeforehand()); }
 
-double GyroBias::variance() const {
-  return 1 / (1 / (kBeforehand * kBeforehand) + steps_ / (kOfStep * kOfStep));
-}
+double GyroBias::stepsBeforehand() const { return kOfStep * kOfStep / (stddev_ * stddev_); }
+
+double GyroBias::variance() const { return kOfStep * kOfStep / (steps_ + stepsBeforehand()); }
 
 void GyroDelay::add(const DelayEffect& effect, double duration) {
   constexpr double kMost = 5e-3;    // s: beyond it, the effect is not linear

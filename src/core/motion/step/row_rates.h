@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -15,13 +16,19 @@ namespace uav_landing {
 /// Constant error of an inertial sensor's angular velocity, from steps that both images and sensor tell.
 class GyroBias {
  public:
+  /// stddev: 1 sigma before any step, rad/s.
+  explicit GyroBias(double stddev) : stddev_(std::max(stddev, kLeast)) {}
   /// off: rate by the images minus that of the sensor, over one step, rad/s.
   void add(const Eigen::Vector3d& off);
   Eigen::Vector3d mean() const;
   double variance() const;  ///< of each axis, (rad/s)^2
 
  private:
-  double steps_ = 0;
+  static constexpr double kLeast = 1e-6;  // rad/s; no sensor has none
+
+  double stepsBeforehand() const;  // that would tell as much
+
+  double stddev_, steps_ = 0;
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
 };
 
@@ -41,6 +48,9 @@ class GyroDelay {
 /// one, or else by the turns of the last steps.
 class RowRates {
  public:
+  /// gyro_bias: 1 sigma of the bias of the sensor's angular velocity, rad/s.
+  explicit RowRates(double gyro_bias) : bias_(gyro_bias) {}
+
   /// Call it before the step to an image. imu: of that image.
   void see(const AttitudePrior& imu);
   /// Velocities in the step to that image. duration: s. height_then: in heights now.

@@ -10,11 +10,9 @@ namespace {
 
 constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Least logarithm of the likelihood ratio at which shake is found, and the same while rows are suspected.
-// What looks like shake of a global shutter begins an estimate of the readout time. That costs less than an
-// angle, so it may be less. Over flat ground no global shutter came near it: the largest was 30, and mostly
-// no pair has any sign.
-constexpr double kLeastLikelihood = 100, kLeastSuspected = 60;
+// Least logarithm of the likelihood ratio at which shake is found. Over flat ground no global shutter came
+// near it: the largest was 30, and mostly no pair has any sign.
+constexpr double kLeastLikelihood = 40;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
@@ -117,10 +115,11 @@ double ShakeMemory::stddev(int k) {
   return kLeastStddev * std::pow(kMostStddev / kLeastStddev, k / (kStddevs - 1.0));
 }
 
+// What speaks against shake is not remembered, or vibration that begins would have to make up for it first.
 void ShakeMemory::add(const Likelihoods& pair) {
   for (size_t i = 0; i < kCycles.size(); ++i)
     for (int k = 0; k < kStddevs; ++k)
-      if (std::isfinite(pair[i][k])) sums_[i][k] = kKept * sums_[i][k] + pair[i][k];
+      if (std::isfinite(pair[i][k])) sums_[i][k] = kKept * std::max(before_[i][k], 0.0) + pair[i][k];
 }
 
 ShakeMemory::Size ShakeMemory::likeliest() const {
@@ -156,7 +155,7 @@ RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sum
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > (watch.suspected ? kLeastSuspected : kLeastLikelihood))) return {};
+  if (!(size.likelihood > kLeastLikelihood)) return {};
   // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
   return {size.stddev * size.stddev, sums.takeOut(root, noise)};

@@ -26,13 +26,16 @@ class ShakeMemory {
   };
   /// Logarithms of the likelihood ratios for one pair. Indices: cycles, then standard deviations.
   using Likelihoods = std::array<std::array<double, kStddevs>, kCycles.size()>;
+  /// What counts is the last look at a pair.
   void add(const Likelihoods& pair);
   /// Instead of add(), for a pair without a sign of shake.
   void fade() { add({}); }
+  /// Call it before each pair.
+  void begin() { before_ = sums_; }
   Size likeliest() const;
 
  private:
-  Likelihoods sums_ = {};
+  Likelihoods before_ = {}, sums_ = {};  // without this pair, and with it
 };
 
 /// Where to look for shake.
@@ -42,9 +45,6 @@ struct ShakeWatch {
   /// False while the shutter is taken as global, as nothing is told of it. Then most pairs show no sign of
   /// shake, and the likelihoods are not worked out for them.
   bool rolling = true;
-  /// True while nobody knows whether rows take their time or shake: nothing is told of the shutter, and an
-  /// estimate has just begun, or not yet.
-  bool suspected = false;
 };
 
 /// Shapes over the nodes that shake around one frequency can have. Shake is smooth over the nodes, so a few

@@ -1,8 +1,8 @@
 #include "motion/step/turn_history.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/steadiness.h"
 #include "estimation/aircraft.h"
@@ -13,19 +13,17 @@ namespace {
 
 constexpr double kKept = 0.9;  // share of the scatters that is left at the next step
 
-// Derivatives of the polynomial through these values (Newton's divided differences).
-RowMotion derivatives(const std::vector<double>& times, std::vector<Eigen::Vector3d> values, double at) {
-  const size_t n = times.size();
-  for (size_t order = 1; order < n; ++order)
-    for (size_t i = n - 1; i >= order; --i)
-      values[i] = (values[i] - values[i - 1]) / (times[i] - times[i - order]);
-  Eigen::Vector3d value = values[n - 1];
+// First and second derivative at `at` of the polynomial through these values, a row of `values` for each
+// time.
+RowMotion derivatives(const Eigen::VectorXd& times, const Eigen::MatrixX3d& values, double at) {
+  const Eigen::Index n = times.size();
+  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(n, n);
+  for (Eigen::Index k = 1; k < n; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(times);
+  const Eigen::MatrixX3d coefficients = powers.partialPivLu().solve(values);
   RowMotion rate;
-  for (size_t i = n - 1; i-- > 0;) {
-    rate.a = 2 * rate.w + (at - times[i]) * rate.a;
-    rate.w = value + (at - times[i]) * rate.w;
-    value = values[i] + (at - times[i]) * value;
-  }
+  for (Eigen::Index k = 1; k < n; ++k) rate.w += k * std::pow(at, k - 1) * coefficients.row(k).transpose();
+  for (Eigen::Index k = 2; k < n; ++k)
+    rate.a += k * (k - 1) * std::pow(at, k - 2) * coefficients.row(k).transpose();
   return rate;
 }
 
@@ -62,16 +60,19 @@ int TurnHistory::bestDegree() const {
   return better ? kMostDegree : kMostDegree - 1;
 }
 
-// The step itself is one more point than those of the stamps before.
+// The step itself is one more point than those of the stamps before. Times are since its beginning.
 StepEnds TurnHistory::turnBy(int degree, double duration, const Eigen::Vector3d& turn) const {
+  Eigen::VectorXd times(degree + 1);
+  Eigen::MatrixX3d sums(degree + 1, 3);
+  times[0] = duration;
+  sums.row(0) = turn;
   const Turned& begin = turned_.back();
-  std::vector<double> times = {begin.time + duration};
-  std::vector<Eigen::Vector3d> values = {begin.sum + turn};
-  for (auto past = turned_.rbegin(); static_cast<int>(times.size()) <= degree; ++past) {
-    times.push_back(past->time);
-    values.push_back(past->sum);
+  for (int i = 1; i <= degree; ++i) {
+    const Turned& past = turned_[turned_.size() - i];
+    times[i] = past.time - begin.time;
+    sums.row(i) = past.sum - begin.sum;
   }
-  return {derivatives(times, values, begin.time), derivatives(times, values, times.front())};
+  return {derivatives(times, sums, 0), derivatives(times, sums, duration)};
 }
 
 StepEnds TurnHistory::ends(const CameraMotion& step, double duration, double height_then) const {
