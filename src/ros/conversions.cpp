@@ -123,7 +123,8 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   message.runway = toMessage(result.runway);
   message.sight = toMessage(result.sight);
   message.imu = toMessage(result.imu);
-  toArray(result.plane_by_turns, message.plane_by_turns);
+  toArray(result.plane_by_turns.mean, message.plane_by_turns);
+  toArray(result.plane_by_turns.covariance, message.plane_by_turns_covariance);
   message.readout_time = result.readout.time;
   message.readout_time_variance = result.readout.variance;
   message.compute_ms = compute_ms;
@@ -150,7 +151,8 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   result.runway = toResult(message.runway);
   result.sight = toResult(message.sight);
   result.imu = toResult(message.imu);
-  fromArray(message.plane_by_turns, result.plane_by_turns);
+  fromArray(message.plane_by_turns, result.plane_by_turns.mean);
+  fromArray(message.plane_by_turns_covariance, result.plane_by_turns.covariance);
   result.readout = {message.readout_time, message.readout_time_variance};
   return result;
 }

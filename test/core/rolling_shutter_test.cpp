@@ -74,6 +74,13 @@ test::Pose gustyPose(double t) {
   return pose;
 }
 
+/// The same path while the rig vibrates about its pitch axis.
+test::Pose vibratingPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.pitch += 0.15 * test::kDegree * std::sin(2 * M_PI * 47 * t);
+  return pose;
+}
+
 /// What the chain is told of the shutter.
 enum class Told { kNothing, kToEstimate, kAll };
 
@@ -160,6 +167,13 @@ TEST(RollingShutter, IsClaimedInGustsWhenItsReadoutTimeIsKnown) {
     EXPECT_LT(ratios.height, 3) << readout;
     EXPECT_EQ(ratios.shaken, 0) << readout;
   }
+}
+
+TEST(RollingShutter, WidensTheClaimsOfHeightsUnderVibration) {
+  const Ratios ratios = ratiosOf(kReadout, Told::kAll, vibratingPose);
+  ASSERT_GT(ratios.count, 20);
+  EXPECT_EQ(ratios.shaken, ratios.count) << "the vibration must be seen";
+  EXPECT_LT(ratios.height, 3);
 }
 
 TEST(RollingShutter, ThatWasSeenIsForgottenAtAReset) {

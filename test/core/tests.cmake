@@ -85,6 +85,7 @@ uav_landing_add_gtest(vanishing_point_test test/core/lines/vanishing_point_test.
 
 # rig
 uav_landing_add_gtest(pair_skew_test test/core/rig/pair_skew_test.cpp)
+uav_landing_add_gtest(plane_by_turns_test test/core/rig/plane_by_turns_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_rate_test test/core/rig/plane_rate_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)

@@ -142,7 +142,8 @@ ApproachAngleResult distinctApproachAngle() {
   fill(result.foe);
   fill(result.foe_covariance);
   result.readout = {next(), next()};
-  result.plane_by_turns = {next(), next(), next()};
+  fill(result.plane_by_turns.mean);
+  fill(result.plane_by_turns.covariance);
   result.imu.failure = {Reason::kRejected, "off"};
   fill(result.imu.normal);
   fill(result.imu.normal_covariance);
@@ -319,7 +320,8 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   EXPECT_EQ(back.foe, result.foe);
   EXPECT_EQ(back.foe_covariance, result.foe_covariance);
   EXPECT_EQ(back.readout.time, result.readout.time);
-  EXPECT_EQ(back.plane_by_turns, result.plane_by_turns);
+  EXPECT_EQ(back.plane_by_turns.mean, result.plane_by_turns.mean);
+  EXPECT_EQ(back.plane_by_turns.covariance, result.plane_by_turns.covariance);
   EXPECT_EQ(back.readout.variance, result.readout.variance);
   EXPECT_EQ(back.imu.failure.message(), result.imu.failure.message());
   EXPECT_EQ(back.imu.normal, result.imu.normal);

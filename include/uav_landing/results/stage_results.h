@@ -72,8 +72,8 @@ struct StereoDepthResult {
   int corners = 0;   ///< number of corners looked for in the right image
   std::vector<Point> points;
   GroundPlane plane;
-  /// Share of the plane's covariance that comes from vertical disparities, 1/m^2. It is nearly the same in
-  /// every pair.
+  /// Share of the plane's covariance that comes from vertical disparities, and later from row times, 1/m^2.
+  /// It is nearly the same in every pair.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
   /// With row times: plane_rate is how fast g changes according to the pairs before, 1/m/s. It carried g to
   /// the stamp. plane_by_rate is the derivative of g by that rate, s. Both are zero when all rows are exposed
@@ -147,6 +147,12 @@ struct ApproachAngleResult {
     Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);   ///< unit, towards +z
     Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2, rank 2
   };
+  /// Error of the plane vector of stereo, because the camera turned between the rows of the image.
+  struct PlaneByTurns {
+    Eigen::Vector3d mean =
+        Eigen::Vector3d::Zero();  ///< as an inertial sensor measured it, 1/m; to be taken off
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of what stays, 1/m^2
+  };
   /// Camera motion over an interval that ends at this frame.
   struct Motion {
     Failure failure;
@@ -157,8 +163,8 @@ struct ApproachAngleResult {
     Eigen::Vector3d rotation = Eigen::Vector3d::Constant(kUnknown);
     /// Movement of the camera in the current frame, over the current height: t / h.
     Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
-    /// Rate of turn now, rad/s, in the sense of `rotation`. Not known without row times, in the window, and
-    /// where rows move on their own.
+    /// Rate of turn now, rad/s, in the sense of `rotation`. Not known without row times, and where vibration
+    /// hides it. The window has none but where it is the step.
     Eigen::Vector3d turn_rate = Eigen::Vector3d::Constant(kUnknown);
     Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
@@ -228,9 +234,7 @@ struct ApproachAngleResult {
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
   Sight sight;
-  /// Error of the plane of stereo by turns between its rows, which an inertial sensor measured, 1/m. It is to
-  /// be taken off.
-  Eigen::Vector3d plane_by_turns = Eigen::Vector3d::Zero();
+  PlaneByTurns plane_by_turns;
   /// Estimate by the pairs before. All numbers of this pair are corrected by it, and their claims contain its
   /// error.
   ReadoutEstimate readout;

@@ -110,6 +110,13 @@ bool isReadout(const ReadoutEstimate& readout) {
                     readout.variance <= kLongestReadout * kLongestReadout);
 }
 
+void keepByTurns(ApproachAngleResult::PlaneByTurns& by_turns) {
+  constexpr double kLargest = 1;  // 1/m
+  const bool possible = by_turns.mean.norm() <= kLargest &&
+                        (by_turns.covariance.isZero(0) || isCovariance<3>(by_turns.covariance));
+  if (!possible) by_turns = {};
+}
+
 void keepImu(AttitudePrior& imu) {
   keepDirection(imu.normal, imu.normal_covariance);
   const bool possible = imu.rotation.norm() <= M_PI && imu.duration >= kShortestStep &&
@@ -242,8 +249,7 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepSight(kept.sight);
   keepImu(kept.imu);
   if (!isReadout(kept.readout)) kept.readout = {};
-  constexpr double kLargestByTurns = 1;  // 1/m
-  if (!(kept.plane_by_turns.cwiseAbs().maxCoeff() <= kLargestByTurns)) kept.plane_by_turns.setZero();
+  keepByTurns(kept.plane_by_turns);
   if (!(kept.other_runway_probability >= 0 && kept.other_runway_probability <= 1))
     kept.other_runway_probability = 1;
   if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);

@@ -1,6 +1,5 @@
 #include "rig/plane_rate.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "geometry/cross_matrix.h"
@@ -59,37 +58,6 @@ Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& st
   const Eigen::Vector3d by_time = takeReadout(rate, readout, stereo);
   carryTo(rate, stereo);
   return by_time;
-}
-
-Eigen::Vector3d planeByTurns(const StereoRig& rig, const RowTimes& times, const GyroTurn& turns,
-                             const StereoDepthResult& stereo) {
-  constexpr size_t kFewest = 20;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  size_t count = 0;
-  if (times.atOnce() || !turns.rows || !stereo.plane.valid()) return right;
-  for (const StereoDepthResult::Point& point : stereo.points) {
-    if (!point.on_plane) continue;
-    const Eigen::Vector3d ray = rig.ray(point.u, point.v);
-    information += ray * ray.transpose();
-    right += ray * ray.dot(turns.at(times.at(point.u, point.v)).cross(stereo.plane.g));
-    ++count;
-  }
-  if (count < kFewest) return Eigen::Vector3d::Zero();
-  return information.ldlt().solve(right);
-}
-
-void takeOff(const Eigen::Vector3d& by_turns, StereoDepthResult& stereo) {
-  constexpr double kLeft = 0.3;  // share of it that stays
-  constexpr double kMost = 0.1;  // of the plane: vibration is far smaller
-  if (by_turns.isZero(0) || !stereo.plane.valid()) return;
-  if (by_turns.norm() > kMost * stereo.plane.g.norm()) {
-    addToPlane(by_turns * by_turns.transpose(), stereo);
-    return;
-  }
-  stereo.plane.g -= by_turns;
-  if (stereo.below.valid()) stereo.below.g -= by_turns;
-  addToPlane(kLeft * kLeft * by_turns * by_turns.transpose(), stereo);
 }
 
 void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,

@@ -16,20 +16,12 @@ namespace uav_landing {
 Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& readout,
                            StereoDepthResult& stereo);
 
-/// The same with the step up to this pair; the covariance then contains the effect of the step's errors.
+/// The same with the step up to this pair; the covariance then contains the effect of the errors of its mean
+/// rates.
 /// Without a step the rate counts as an error of its own size. Without a given readout time and without a
 /// step, the rate of stereo is used instead.
 void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,
                 StereoDepthResult& stereo);
-
-/// What turns beyond the mean rate do to the plane of stereo, 1/m, by its points: a plane is fitted to what
-/// they add to the disparities. times: of the rows.
-Eigen::Vector3d planeByTurns(const StereoRig& rig, const RowTimes& times, const GyroTurn& turns,
-                             const StereoDepthResult& stereo);
-
-/// Takes that off the plane. Points stand for all pixels that made the plane, so a part of it stays as
-/// uncertainty. All of it does where it is too large for vibration.
-void takeOff(const Eigen::Vector3d& by_turns, StereoDepthResult& stereo);
 
 /// The same by the rate of stereo alone. Nothing changes when the readout time is given.
 Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& stereo);

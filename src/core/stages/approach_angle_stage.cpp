@@ -17,6 +17,7 @@
 #include "motion/step/readout_filter.h"
 #include "results/any_angle.h"
 #include "results/result_check.h"
+#include "rig/plane_by_turns.h"
 #include "rig/plane_rate.h"
 #include "runway/direction/runway_direction.h"
 #include "runway/position/runway_tracker.h"
@@ -85,7 +86,10 @@ struct ApproachAngleStage::Implementation {
     result.readout = currentReadout();
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
     // The rows of a repeated image were exposed at another time.
-    if (repeated(stereo)) result.imu.rows.reset();
+    if (repeated(stereo) && result.imu.rows) {
+      result.imu.rows.reset();
+      result.imu.rows_failure = {Reason::kInconsistent, "the left image is that of the pair before"};
+    }
     result.failure = checkPair(model, left, right);
     const Failure too_long = readout.follow(stamp);
     if (!result.failure) result.failure = too_long;
@@ -107,8 +111,10 @@ struct ApproachAngleStage::Implementation {
     const std::optional<RowMotion> motion = tracker.lastMotion(stamp, result.imu);
     DoubtByReadout plane{Eigen::Vector3d::Zero(), stereo.plane.covariance};
     plane.by_time = motion ? carryPlane(*motion, result.readout, stereo) : carryPlane(result.readout, stereo);
-    if (motion) result.plane_by_turns = planeByTurns(model.rig, model.left_times, motion->beyond, stereo);
-    takeOff(result.plane_by_turns, stereo);
+    const RowTimes& times = model.left_times.atOnce() ? model.left_unit_times : model.left_times;
+    result.plane_by_turns = planeByTurns(
+        model.rig, times, {motion ? motion->beyond : GyroTurn(), tracker.vibration(stamp)}, stereo);
+    plane.covariance += takeOff(result.plane_by_turns, stereo);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{

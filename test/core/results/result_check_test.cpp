@@ -247,6 +247,32 @@ TEST(ResultCheck, ABaselineFurtherThanAnyIsLeftOut) {
   EXPECT_FALSE(isKept(0.1, 0));
 }
 
+TEST(ResultCheck, TurnsBetweenRowsThatCannotBeAreLeftOut) {
+  const auto isKept = [](const Eigen::Vector3d& mean, double variance) {
+    ApproachAngleResult result;
+    result.plane_by_turns = {mean, variance * Eigen::Matrix3d::Identity()};
+    const ApproachAngleResult::PlaneByTurns kept = checked(result).plane_by_turns;
+    EXPECT_TRUE(kept.mean == mean || (kept.mean.isZero(0) && kept.covariance.isZero(0)));
+    return kept.mean == mean && kept.covariance == result.plane_by_turns.covariance;
+  };
+  EXPECT_TRUE(isKept({1e-3, 0, -1e-3}, 1e-8));
+  EXPECT_TRUE(isKept({1e-3, 0, 0}, 0));
+  EXPECT_FALSE(isKept({0, 0, 2}, 1e-8));
+  EXPECT_FALSE(isKept({0, 0, kUnknown}, 1e-8));
+  EXPECT_FALSE(isKept({1e-3, 0, 0}, -1e-8));
+  EXPECT_FALSE(isKept({1e-3, 0, 0}, kUnknown));
+}
+
+TEST(ResultCheck, ARateOfTurnThatNoAircraftHasIsLeftOut) {
+  const auto isKept = [](const Eigen::Vector3d& rate) {
+    ApproachAngleResult result;
+    result.step.turn_rate = rate;
+    return checked(result).step.turn_rate == rate;
+  };
+  EXPECT_FALSE(isKept({0, 20, 0}));
+  EXPECT_FALSE(isKept({0, 0, kUnknown}));
+}
+
 TEST(ResultCheck, AReadoutTimeThatNoCameraHasIsLeftOut) {
   const auto isKept = [](double time, double variance) {
     ApproachAngleResult result;

@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <memory>
-#include <vector>
 
 #include "support/rolling_camera.h"
 
@@ -123,53 +121,6 @@ TEST(PlaneRate, ByAnEstimatedReadoutTimeCorrectsThePlaneAndClaimsItsError) {
   carryPlane(ApproachAngleResult::Motion(), {kReadout, kStddev * kStddev}, by_stereo);
   EXPECT_LT((by_stereo.plane.g - kPlane).norm(), 2 * kSecondOrder * kPlane.norm());
   EXPECT_NEAR(std::sqrt(along.dot(by_stereo.plane.covariance * along)), claimed, 0.02 * claimed);
-}
-
-/// Disparities of the ground, in rows of 20 ms that a vibration turns about the right axis.
-TEST(PlaneRate, OfTurnsBetweenRowsIsTakenOffThePlane) {
-  const StereoRig rig = test::makeRig(640, 480, 1);
-  const RowTimes times(test::calibrationOf(rig), {0.02, 0.5});
-  std::vector<Eigen::Vector3d> rates;
-  for (int i = -12; i <= 12; ++i) rates.push_back({0.5 * std::cos(280 * i * RowTurns::kInterval), 0, 0});
-  const GyroTurn turns{
-      std::make_shared<const RowTurns>(-12 * RowTurns::kInterval, rates, Eigen::Matrix3d::Zero())};
-  StereoDepthResult pair;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (int v = 260; v < 480; v += 15)
-    for (int u = 20; u < 640; u += 60) {
-      const Eigen::Vector3d row = rig.fb() * rig.ray(u, v);
-      // The plane in the frame of the row, turned exactly.
-      const Eigen::Vector3d turn = turns.at(times.at(u, v));
-      const Eigen::Vector3d seen = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * kPlane;
-      information += row * row.transpose();
-      right += row * row.dot(turn.isZero(0) ? kPlane : seen);
-      StereoDepthResult::Point point;
-      point.u = u;
-      point.v = v;
-      point.on_plane = true;
-      pair.points.push_back(point);
-    }
-  pair.plane.g = information.ldlt().solve(right);
-  pair.plane.covariance = 1e-12 * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d error = pair.plane.g - kPlane, by_turns = planeByTurns(rig, times, turns, pair);
-  EXPECT_GT(error.norm(), 1e-4 * kPlane.norm()) << "the vibration must matter";
-  EXPECT_LT((by_turns - error).norm(), 0.02 * error.norm());
-  takeOff(by_turns, pair);
-  EXPECT_LT((pair.plane.g - kPlane).norm(), 0.02 * error.norm());
-  EXPECT_NEAR(std::sqrt(pair.plane.covariance.trace()), 0.3 * error.norm(), 0.02 * error.norm());
-  pair.points.resize(5);
-  EXPECT_TRUE(planeByTurns(rig, times, turns, pair).isZero(0)) << "too few points tell nothing";
-  EXPECT_TRUE(planeByTurns(rig, times, {}, pair).isZero(0));
-}
-
-TEST(PlaneRate, TooLargeForVibrationIsNotTakenOff) {
-  StereoDepthResult pair = pairOf(kPlane, Eigen::Vector3d::Zero());
-  const Eigen::Matrix3d before = pair.plane.covariance;
-  const Eigen::Vector3d off = 0.2 * kPlane;
-  takeOff(off, pair);
-  EXPECT_EQ(pair.plane.g, kPlane);
-  EXPECT_LT((pair.plane.covariance - before - off * off.transpose()).norm(), 1e-12);
 }
 
 }  // namespace

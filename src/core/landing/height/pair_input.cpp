@@ -4,6 +4,7 @@
 
 #include "integrity/tests/test_catalogue.h"
 #include "results/result_check.h"
+#include "rig/plane_by_turns.h"
 #include "rig/plane_rate.h"
 
 namespace uav_landing {

@@ -83,7 +83,7 @@ void MotionTracker::reset() {
 }
 
 void MotionTracker::forgetRows() {
-  step_shake_ = window_shake_ = {};
+  shake_ = {};
   filter_.reset();
 }
 
@@ -131,6 +131,11 @@ std::optional<RowMotion> MotionTracker::lastMotion(double stamp, const AttitudeP
   return rates_.expected(*motion, stamp - past_.back().stamp, imu);
 }
 
+Vibration MotionTracker::vibration(double stamp) const {
+  constexpr double kRemembered = 1;  // s, as long as the likelihoods
+  return std::abs(stamp - shake_.stamp) < kRemembered ? shake_.found : Vibration();
+}
+
 void MotionTracker::skip(double stamp, const cv::Mat& left, const AttitudePrior& imu) {
   Result nothing;
   nothing.window.failure = {Reason::kNotYet, "no frame step from the previous pair"};
@@ -155,8 +160,8 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
     now = takeFrame(stamp, left);
   }
   rates_.see(conditions.imu);
-  step_shake_.begin();
-  window_shake_.begin();
+  shake_.step.begin();
+  shake_.window.begin();
   if (past_.empty()) {
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
@@ -188,7 +193,7 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         conditions.time,
                         &times_,
                         doubtOf(seen, conditions),
-                        rowDoubt(duration, step_shake_, seen, conditions.readout)};
+                        rowDoubt(duration, shake_.step, seen, conditions.readout)};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -207,8 +212,11 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
   result.step_angle = described.angle;
   if (!estimate) return;
   result.ends = rates_.ends(estimate->motion, duration, 1 + estimate->normal.dot(estimate->motion.t));
-  // Rows that move on their own disturb the turns from which the rates come.
-  if (mayRoll() && !result.step.rowsMove()) result.step.turn_rate = result.ends.now.w;
+  // Vibration disturbs the turns of steps, but not the sensor.
+  if (mayRoll() && (rates_.measuresNow() || !estimate->vibration.found()))
+    result.step.turn_rate = result.ends.now.w;
+  shake_.found = estimate->vibration;
+  shake_.stamp = now.stamp;
   result.step_estimate = *estimate;
   result.readout = estimate->readout;
   claimReadout(conditions.readout, *result.step_estimate);
@@ -259,7 +267,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     const ReadoutDoubt doubt = doubtOf(seen, conditions);
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
-    RowDoubt rows = rowDoubt(result.step.duration, window_shake_, seen, conditions.readout);
+    RowDoubt rows = rowDoubt(result.step.duration, shake_.window, seen, conditions.readout);
     rows.delay.then = motion_then.beyond;
     if (!rows.delay.then.rows) rows.delay = {};
     const MotionPrior prior{predicted, seen.normal, nullptr, rows};
@@ -270,6 +278,7 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
         describe(estimate, factsOf(duration, window_matches_, conditions.readout));
     result.window = described.motion;
     result.window_angle = described.angle;
+    if (estimate->vibration.stddev > shake_.found.stddev) shake_.found = estimate->vibration;
     return;
   }
   result.window = result.step;

@@ -70,6 +70,9 @@ class MotionTracker {
   /// Velocities of the camera at this stamp (s), as the last step or the inertial sensor lets expect them.
   /// Nothing when the last step is not known or too old.
   std::optional<RowMotion> lastMotion(double stamp, const AttitudePrior& imu) const;
+  /// What the last motions show of vibration. With a rolling shutter it turns the rows of an image. Nothing
+  /// when they are a second old at this stamp (s).
+  Vibration vibration(double stamp) const;
   /// Keeps the image for the next step when no motion can be estimated to it.
   void skip(double stamp, const cv::Mat& left, const AttitudePrior& imu = {});
   /// Call it instead of process() for an image that is the same as in the previous call. There is no step;
@@ -123,7 +126,11 @@ class MotionTracker {
   double last_duration_ = 0;  // of last_step_, s
   double last_sink_ = 0;      // n.t of last_step_, in heights at its end
   RowRates rates_;
-  ShakeMemory step_shake_, window_shake_;
+  struct Shake {
+    ShakeMemory step, window;
+    Vibration found;   // by the last step, or by the window when it is larger there
+    double stamp = 0;  // of that step, s
+  } shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
   double last_rate_stddev_ = 0;  // of the window's angle, rad/s

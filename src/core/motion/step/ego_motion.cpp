@@ -279,6 +279,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
         own->covariance * (with_time.tail<3>() + own->by_it.transpose() * with_time.head<6>());
     result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, *found, *own);
   }
+  result.vibration = beside.shake.vibration;
   result.delay = beside.delay;
   result.inliers = std::move(found->inliers);
   result.inlier_count = found->inlier_count;

@@ -41,6 +41,7 @@ struct MotionEstimate {
   ReadoutEffect readout;
   /// Part of the covariance that comes from rotations while rows are exposed (see RowShake); 0 without them.
   Eigen::Matrix<double, 9, 9> of_shake = Eigen::Matrix<double, 9, 9>::Zero();
+  Vibration vibration;  ///< that the matches show
   DelayEffect delay;
   std::vector<char> inliers;
   int inlier_count = 0;

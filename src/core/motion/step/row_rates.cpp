@@ -44,9 +44,8 @@ void RowRates::setRate(const AttitudePrior& imu, RowMotion& motion) const {
 
 StepEnds RowRates::ends(const CameraMotion& step, double duration, double height_then) const {
   StepEnds ends = history_.ends(step, duration, height_then);
-  if (!measured()) return ends;
-  setRate(then_, ends.then);
-  setRate(now_, ends.now);
+  if (then_.rows) setRate(then_, ends.then);
+  if (now_.rows) setRate(now_, ends.now);
   return ends;
 }
 

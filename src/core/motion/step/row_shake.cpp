@@ -18,14 +18,12 @@ constexpr double kKept = 0.95;
 
 // Root L of the covariance L L' of shake of unit variance around one frequency, for one axis.
 Eigen::MatrixXd shapesOf(Eigen::Index nodes, double cycles) {
-  constexpr double kAlike = 0.5;   // cycles, so the frequency is known to a third
   constexpr double kLeast = 1e-2;  // shapes of less variance over the nodes are left out
+  const Vibration vibration{1, cycles};
   Eigen::MatrixXd covariance(nodes, nodes);
   for (Eigen::Index i = 0; i < nodes; ++i)
-    for (Eigen::Index j = 0; j < nodes; ++j) {
-      const double apart = static_cast<double>(i - j) / RowNode::kInReadout * cycles;
-      covariance(i, j) = std::cos(2 * M_PI * apart) * std::exp(-0.5 * std::pow(apart / kAlike, 2));
-    }
+    for (Eigen::Index j = 0; j < nodes; ++j)
+      covariance(i, j) = vibration.alike(static_cast<double>(i - j) / RowNode::kInReadout);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
   const Eigen::VectorXd& variances = axes.eigenvalues();
   const Eigen::Index kept = (variances.array() > kLeast).count();
@@ -158,7 +156,7 @@ RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sum
   if (!(size.likelihood > kLeastLikelihood)) return {};
   // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
-  return {size.stddev * size.stddev, sums.takeOut(root, noise)};
+  return {{size.stddev, ShakeMemory::kCycles[size.cycles]}, sums.takeOut(root, noise)};
 }
 
 }  // namespace uav_landing

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "geometry/vibration.h"
 #include "motion/step/motion_state.h"
 #include "motion/step/row_node.h"
 #include "motion/step/row_sums.h"
@@ -64,10 +65,10 @@ class ShakeShapes {
 /// random numbers of one variance, and similar at times that are close. They are additional unknowns and are
 /// taken out of the normal equations of the motion.
 struct RowShake {
-  double variance = 0;               ///< rad^2, of each axis
+  Vibration vibration;
   Vector9d step = Vector9d::Zero();  ///< change of the motion to the one that fits best with the shake
 
-  bool found() const { return variance > 0; }
+  bool found() const { return vibration.found(); }
 };
 
 /// Looks for shake in one pair, and takes it out of the sums when there is some. Any part of the residuals
