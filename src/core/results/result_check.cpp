@@ -86,7 +86,8 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
   const bool possible =
       measured && motion.rotation.norm() <= std::min(M_PI, aircraft::kFastestTurnRate * motion.duration) &&
       motion.translation_over_height.norm() <= kLargestRatio && motion.duration >= kShortestStep &&
-      motion.duration <= kLongestStep && isCovariance<6>(motion.covariance);
+      motion.duration <= kLongestStep && isCovariance<6>(motion.covariance) &&
+      motion.covariance.diagonal().minCoeff() > 0;  // nothing that is measured is exact
   if (!possible) {
     motion.duration = kUnknown;
     motion.rotation.setConstant(kUnknown);

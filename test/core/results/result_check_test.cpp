@@ -85,6 +85,17 @@ TEST(ResultCheck, AMotionOfRowsThatIsNoAngleIsLeftOutAlone) {
   }
 }
 
+TEST(ResultCheck, AMotionThatIsExactInOneDirectionIsLeftOut) {
+  for (const double variance : {0.0, -1e-146}) {
+    ApproachAngleResult result;
+    result.step = possibleMotion();
+    result.step.covariance.row(0).setZero();
+    result.step.covariance.col(0).setZero();
+    result.step.covariance(0, 0) = variance;
+    EXPECT_FALSE(checked(result).step.rotation.allFinite());
+  }
+}
+
 TEST(ResultCheck, AMotionThatFailedLosesEachOfItsNumbersButNotItsReason) {
   for (const Reason reason : {Reason::kNotYet, Reason::kInputInvalid, Reason::kTooFewMatches,
                               Reason::kMotionInconsistent, Reason::kTimeJump}) {
