@@ -16,19 +16,6 @@ QUANTITIES = (("height", "m", "height_valid"), ("approach_angle", "deg", "angle_
               ("roll", "deg", "height_valid"), ("y", "m", "height_valid"), ("speed", "m_s", "height_valid"))
 TITLES = {"height": "height", "approach_angle": "approach angle", "pitch": "pitch", "roll": "roll", "y": "lateral", "speed": "speed"}
 OVER_FLAT = ("approach_angle", "pitch", "roll", "speed")
-# What else is drawn for the second table: title, options of simulate_campaign.
-SENSORS = (("rolling shutter", ("--rolling-shutter",)),
-           ("rolling shutter, vibration", ("--rolling-shutter", "--vibration")),
-           ("the same with an inertial sensor", ("--rolling-shutter", "--vibration", "--imu")))
-SENSOR_NOISE = 2
-SENSOR_TEXT = """
-### Rolling shutters and vibration
-{count} more snippets for each row, with noise of {noise} grey levels and over flat ground. They have a rolling shutter of 5 to 40 ms, a fifth
-of them from bottom to top. The stamp is that of the middle row or of one at an edge (`--rolling-shutter`). With `--vibration` the rig is
-shaken at 15 to 120 Hz by up to 0.2°, less when it is faster. *Valid* is the share of snippets with a valid height. The other columns are
-as above.
-
-"""
 IMAGE = ROOT / "docs/images/consistency.png"
 TEXT = """{count} snippets for each noise and height, drawn like the approaches above. A snippet has {frames} frames at 20 Hz, and only its last frame
 counts: samples are independent. Every snippet has another scene and path, and other errors of calibration, drawn from what the estimator
@@ -105,25 +92,11 @@ def flights(options):
     return bent, flat + more
 
 
-def sensor_rows(options):
-    """Returns the scores by what else is drawn and by height."""
-    quantities = [quantity for quantity in QUANTITIES if quantity[0] != "y"]
-    scores = []
-    for title, drawn in SENSORS:
-        rows = fly("snippets", 1, options.snippets, 10, options.jobs, *drawn, "--noise", SENSOR_NOISE, "--heights", *HEIGHTS)
-        for height in HEIGHTS:
-            inside = [row for row in rows if float(row["cell_height_m"]) == height]
-            scores.append([title, height, sum(row["height_valid"] == "1" for row in inside) / len(inside),
-                           {name: score(inside, name, unit, flag) for name, unit, flag in quantities}])
-    return scores
-
-
 def measure(options):
     bent, flat = flights(options)
     heights = cells(bent, QUANTITIES[:1])
     kept.keep("consistency", {
         "count": options.snippets, "frames": 1 + max(int(row["frame"]) for row in flat),
-        "sensors": sensor_rows(options),
         "cells": [{"height": height, "noise": noise, "flat_height": scores["height"],
                    "quantities": {**scores, **heights[height, noise]}}
                   for (height, noise), scores in cells(flat, QUANTITIES).items()]})
@@ -180,15 +153,4 @@ def render(results):
              count(cell["flat_height"]), *(entry(cell["quantities"].get(name)) for name in OVER_FLAT), entry(cell["flat_height"]),
              count(cell["quantities"]["y"]), entry(cell["quantities"]["y"])]
             for cell in results["cells"]]
-    return TEXT.format(**results) + table(header, rows) + sensor_table(results)
-
-
-def sensor_table(results):
-    """Makes the second table. It is empty for results that were kept before it was measured."""
-    if not results.get("sensors"):
-        return ""
-    names = ("height", *OVER_FLAT)
-    rows = [[title, f"{height} m", f"{valid:.0%}", *(entry(scores[name]) for name in names)]
-            for title, height, valid, scores in results["sensors"]]
-    return (SENSOR_TEXT.format(count=results["count"], noise=SENSOR_NOISE)
-            + table(("drawn besides", "height", "valid", *(TITLES[name] for name in names)), rows))
+    return TEXT.format(**results) + table(header, rows)

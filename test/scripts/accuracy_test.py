@@ -14,7 +14,7 @@ import numpy as np
 from project import SOURCE_DIR
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
-from measurement import ablation, approaches, consistency, far, kept, markdown, noise, readme, sets, yaw  # noqa: E402
+from measurement import ablation, approaches, consistency, far, kept, markdown, noise, readme, sensors, sets, yaw  # noqa: E402
 
 
 def cells(line):
@@ -136,25 +136,6 @@ class ConsistencyTest(unittest.TestCase):
         self.assertEqual(cells(rows[0]), ["3 m", "1", "4", "75.0 (30.0–95.0); 1.25", "4"] + 4 * ["75.0 (30.0–95.0); 1.25"]
                          + ["75.0 (30.0–95.0); 0.50", "–", "–"])
 
-    def test_rolling_shutters_have_rows_of_their_own_by_height(self):
-        flown = []
-
-        def fly(kind, begin, count, piece, jobs, *options):
-            flown.append(options)
-            return [{"cell_height_m": str(height), "height_valid": str(seed % 2), "angle_valid": "0", "height_m": "10.1",
-                     "height_true_m": "10", "height_stddev_m": "0.1", **{f"{name}_{unit}": "" for name, end, _ in consistency.QUANTITIES
-                     if name != "height" for unit in (end, f"true_{end}", f"stddev_{end}")}}
-                    for seed in range(count) for height in consistency.HEIGHTS]
-
-        with mock.patch.object(consistency, "fly", fly):
-            sensors = consistency.sensor_rows(mock.Mock(snippets=4, jobs=1))
-        self.assertEqual(len(sensors), len(consistency.SENSORS) * len(consistency.HEIGHTS))
-        self.assertTrue(all("--rolling-shutter" in options for options in flown))
-        self.assertTrue(any("--vibration" in options and "--imu" in options for options in flown))
-        lines = consistency.sensor_table({"count": 4, "sensors": sensors}).splitlines()
-        self.assertIn(["rolling shutter", "3 m", "50%", "100.0 (34.2–100.0); 1.00"] + 4 * ["–"], [cells(line) for line in lines])
-        self.assertEqual(consistency.sensor_table({"count": 4}), "", "what was kept before")
-
     def test_flat_ground_is_that_which_happens_not_to_bend_and_more(self):
         def fly(kind, begin, count, piece, jobs, *options):
             # Every third seed's ground bends at 3 m, every second one's elsewhere.
@@ -169,6 +150,28 @@ class ConsistencyTest(unittest.TestCase):
             cell = [row["seed"] for row in flat if row["cell_height_m"] == str(height) and row["noise"] == "2"]
             self.assertEqual(len(cell), count)
             self.assertEqual(len(set(cell)), count)
+
+
+class SensorsTest(unittest.TestCase):
+    def test_every_sensor_has_a_row_for_each_height(self):
+        flown = []
+
+        def fly(kind, begin, count, piece, jobs, *options):
+            flown.append(options)
+            return [{"cell_height_m": str(height), "height_valid": str(seed % 2), "angle_valid": "0", "height_m": "10.1",
+                     "height_true_m": "10", "height_stddev_m": "0.1", **{f"{name}_{unit}": "" for name, end, _ in consistency.QUANTITIES
+                     if name != "height" for unit in (end, f"true_{end}", f"stddev_{end}")}}
+                    for seed in range(count) for height in sensors.HEIGHTS]
+
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
+                mock.patch.object(kept, "WORK", Path(folder)), mock.patch.object(sensors, "fly", fly):
+            sensors.measure(mock.Mock(sensor_snippets=4, jobs=1))
+            results = kept.recall("sensors")[1]
+        self.assertEqual(len(results["rows"]), len(sensors.SENSORS) * len(sensors.HEIGHTS))
+        self.assertTrue(all("--rolling-shutter" in options for options in flown))
+        self.assertTrue(any("--vibration" in options and "--imu" in options for options in flown))
+        lines = [cells(line) for line in sensors.render(results).splitlines()]
+        self.assertIn(["rolling shutter", "3 m", "50%", "0%", "100.0 (34.2–100.0); 1.00"] + 4 * ["–"], lines)
 
 
 class YawTest(unittest.TestCase):

@@ -13,6 +13,8 @@ constexpr int kFewestNodes = 4;
 // Least logarithm of the likelihood ratio at which shake is found. Over flat ground no global shutter came
 // near it: the largest was 30, and mostly no pair has any sign.
 constexpr double kLeastLikelihood = 40;
+// The same for shake to be suspected.
+constexpr double kSuspected = 10;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
@@ -153,10 +155,12 @@ RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sum
   }
   memory.add(likelihoods);
   const ShakeMemory::Size size = memory.likeliest();
-  if (!(size.likelihood > kLeastLikelihood)) return {};
+  const bool found = size.likelihood > kLeastLikelihood;
+  if (!found && !(watch.rolling && size.likelihood > kSuspected)) return {};
   // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * forThreeAxes(roots[size.cycles]);
-  return {{size.stddev, ShakeMemory::kCycles[size.cycles]}, sums.takeOut(root, noise)};
+  const Vector9d step = sums.takeOut(root, noise);
+  return {found ? Vibration{size.stddev, ShakeMemory::kCycles[size.cycles]} : Vibration(), step};
 }
 
 }  // namespace uav_landing

@@ -76,6 +76,9 @@ struct RowShake {
 /// when it is far beyond that noise over this pair and the previous ones. A rig that has turned makes the
 /// normal wrong, and that would look like shake. So the normal counts as unknown while the shutter is taken
 /// as global. A readout time that is estimated is another unknown, as it would look like shake, too.
+///
+/// Where rows have times, shake is suspected before it is found, as when vibration begins. It is taken out
+/// then, too, so that the motion claims it.
 RowShake findRowShake(const ShakeWatch& watch, ShakeShapes& shapes, RowSums& sums);
 
 }  // namespace uav_landing
