@@ -20,7 +20,8 @@ namespace {
 
 using namespace uav_landing;
 
-constexpr int kSnippet = 13;  // frames
+constexpr int kSnippet = 13;          // frames
+constexpr double kOneMessage = 0.01;  // s, between messages of the slowest inertial sensor that is drawn
 
 struct Options {
   std::string config, csv, kind = "snippets";
@@ -80,7 +81,7 @@ void fly(const Options& options, const SimulatorParameters& drawn, Parameters pa
   parameters.rig.stamp_row = drawn.image.stamp_row;
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
   ImuBuffer imu(parameters.approach_angle, leftRowSpan(parameters.rig));
-  for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
+  int heard = 0;
   std::vector<Viewer> viewers = viewersOf(options, drawn, simulator.rig(), parameters, sample.seed);
   for (const std::string& warning : viewers.front().pipeline.warnings())
     std::cerr << "simulate_campaign: seed " << sample.seed << ": " << warning << '\n';
@@ -90,6 +91,9 @@ void fly(const Options& options, const SimulatorParameters& drawn, Parameters pa
     sample.height_above_runway = heightAboveRunway(drawn, simulator.pose(sample.time));
     std::optional<double> before;
     if (sample.frame > 0) before = simulator.timeOf(sample.frame - 1);
+    // The last rows are exposed after the stamp, and a pair waits for the message after them.
+    const double end = sample.time + std::abs(drawn.image.readout_time) + kOneMessage;
+    while (heard < simulator.imu().count(end)) imu.add(simulator.imu().sample(heard++));
     const AttitudePrior prior = imu.at(sample.time, before, opticalFromImu());
     for (Viewer& viewer : viewers) {
       const ApproachSimulator::Frame frame = simulator.expose(light, viewer.noise);

@@ -155,10 +155,14 @@ TEST(RowRates, AreThoseOfTheStepsWhereAnImageHasNoGyroscope) {
   rates.skip();
   const CameraMotion step{rotationMatrix(Eigen::Vector3d(0.01, 0, 0)), Eigen::Vector3d(0, 0, 0.1)};
   rates.see(AttitudePrior());
-  EXPECT_NEAR(rates.ends(step, kPeriod, 1).now.w.x(), 0.01 / kPeriod, 1e-9);
+  const StepEnds ends = rates.ends(step, kPeriod, 1);
+  EXPECT_NEAR(ends.now.w.x(), 0.01 / kPeriod, 1e-9);
+  EXPECT_NEAR(ends.then.w.x(), 0.01 / kPeriod, 1e-9) << "not the gyroscope at one end alone";
+  EXPECT_FALSE(rates.measuredNow());
   EXPECT_EQ(rates.doubt(kPeriod, kReadout).delay.variance, 0);
   rates.see(gyroAt(1.05, 0));
   EXPECT_GT(rates.doubt(kPeriod, kReadout).delay.variance, 0);
+  EXPECT_LT((*rates.measuredNow() - gyroAt(1.05, 0).rows->meanRate()).norm(), 1e-9);
   EXPECT_LT((rates.ends(step, kPeriod, 1).now.w - gyroAt(1.05, 0).rows->meanRate()).norm(), 1e-9);
 }
 

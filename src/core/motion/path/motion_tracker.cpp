@@ -213,7 +213,9 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
   if (!estimate) return;
   result.ends = rates_.ends(estimate->motion, duration, 1 + estimate->normal.dot(estimate->motion.t));
   // Vibration disturbs the turns of steps, but not the sensor.
-  if (mayRoll() && (rates_.measuresNow() || !estimate->vibration.found()))
+  if (const std::optional<Eigen::Vector3d> measured = rates_.measuredNow())
+    result.step.turn_rate = *measured;
+  else if (mayRoll() && !estimate->vibration.found())
     result.step.turn_rate = result.ends.now.w;
   shake_.found = estimate->vibration;
   shake_.stamp = now.stamp;

@@ -44,9 +44,16 @@ void RowRates::setRate(const AttitudePrior& imu, RowMotion& motion) const {
 
 StepEnds RowRates::ends(const CameraMotion& step, double duration, double height_then) const {
   StepEnds ends = history_.ends(step, duration, height_then);
-  if (then_.rows) setRate(then_, ends.then);
-  if (now_.rows) setRate(now_, ends.now);
+  // Vibration that both images have alike does no harm. It would, taken out of one of them alone.
+  if (!measured()) return ends;
+  setRate(then_, ends.then);
+  setRate(now_, ends.now);
   return ends;
+}
+
+std::optional<Eigen::Vector3d> RowRates::measuredNow() const {
+  if (!now_.rows) return std::nullopt;
+  return now_.rows->meanRate() + bias_.mean();
 }
 
 RowMotion RowRates::expected(const RowMotion& last, double age, const AttitudePrior& imu) const {

@@ -53,8 +53,8 @@ class RowRates {
 
   /// Call it before the step to an image. imu: of that image.
   void see(const AttitudePrior& imu);
-  /// Whether the sensor tells the rates at that image.
-  bool measuresNow() const { return now_.rows != nullptr; }
+  /// Mean rate of turn at that image by the sensor, rad/s, where it tells it.
+  std::optional<Eigen::Vector3d> measuredNow() const;
   /// Velocities in the step to that image. duration: s. height_then: in heights now.
   StepEnds ends(const CameraMotion& step, double duration, double height_then) const;
   /// Velocities at an image whose step is not known yet. last: those at the image before, which is so old, s.
