@@ -15,8 +15,8 @@ of 5 to 40 ms, a fifth of them from bottom to top. The stamp is that of the midd
 `--vibration` the rig is shaken at 15 to 120 Hz by up to 0.2°, less when it is faster. The chain is told the readout time. *Valid* is the
 share of snippets with a valid height, and with a valid angle. The other columns are those of [true uncertainty](#true-uncertainty).
 
-A snippet is over after 0.6 s, so these are the first pairs of a flight that shakes: vibration that is weak, or slower than a third of a
-cycle in a readout, is not found yet, and angles claim too little.
+A snippet is over after 0.6 s, so these are the first pairs of a flight that shakes. Weak vibration is not found yet, nor is one of less than
+a third of a cycle in a readout. Angles claim too little then.
 
 """
 

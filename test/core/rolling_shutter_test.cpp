@@ -176,6 +176,40 @@ TEST(RollingShutter, WidensTheClaimsOfHeightsUnderVibration) {
   EXPECT_LT(ratios.height, 3);
 }
 
+// Turns must not be taken out of one image and left in the other, at the ends of the step or of the window.
+TEST(RollingShutter, BearsAGyroscopeThatMissesAnImage) {
+  constexpr int kPairs = 36, kMissed = 24, kLearned = 12;
+  // At twice the frame rate both images shake alike.
+  const auto poseAt = [](double t) {
+    test::Pose pose = test::movingPose(t);
+    pose.pitch += 0.1 * test::kDegree * std::sin(2 * M_PI * 40 * t);
+    return pose;
+  };
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  Parameters parameters;
+  parameters.rig.readout_time = 0.01;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    AttitudePrior imu;
+    if (i != kMissed) imu.rows = test::gyroRows(stamp, poseAt);
+    const ApproachAngleResult result =
+        pipeline
+            .process(stamp, test::rollingImage(poseAt, ground, rig, stamp, 0.01),
+                     test::rollingImage(poseAt, ground, rig, stamp, 0.01, true), 0, imu)
+            .approach;
+    if (i < kLearned) continue;
+    for (const ApproachAngleResult::Motion& motion : {result.step, result.window}) {
+      ASSERT_FALSE(motion.failure) << i << ": " << motion.failure.message();
+      const double before = &motion == &result.step ? kPeriod : 1e-3;
+      const double truth = test::Movement(poseAt(stamp - before), poseAt(stamp)).angle;
+      EXPECT_LT(std::abs(motion.angle - truth), 3 * std::sqrt(motion.angle_variance)) << i;
+    }
+  }
+}
+
 TEST(RollingShutter, ThatWasSeenIsForgottenAtAReset) {
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const test::GroundRenderer ground(12);

@@ -2,10 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "geometry/stamp_map.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/geometry/row_times.h"
+#include "uav_landing/geometry/row_turns.h"
 
 namespace uav_landing {
 namespace test {
@@ -34,6 +37,18 @@ RowMotion motionAt(double t, const PoseAt& poseAt) {
 
 /// Of the camera that moves steadily.
 inline RowMotion motionAt(double t) { return motionAt(t, movingPose); }
+
+/// What a gyroscope on the camera says of the rows of an image. bias: of its rates, rad/s.
+template <class PoseAt>
+std::shared_ptr<const RowTurns> gyroRows(double stamp, const PoseAt& poseAt,
+                                         const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) {
+  constexpr int kEachSide = 20;
+  std::vector<Eigen::Vector3d> rates;
+  for (int i = -kEachSide; i <= kEachSide; ++i)
+    rates.push_back(motionAt(stamp + i * RowTurns::kInterval, poseAt).w - bias);
+  return std::make_shared<const RowTurns>(-kEachSide * RowTurns::kInterval, rates,
+                                          1e-8 * Eigen::Matrix3d::Identity());
+}
 
 /// The calibration of a rectified camera without lens errors.
 inline CameraCalibration calibrationOf(const StereoRig& rig, bool right = false) {

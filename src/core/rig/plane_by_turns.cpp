@@ -4,61 +4,56 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "geometry/cross_matrix.h"
 
 namespace uav_landing {
 namespace {
 
-// Products r r' of the rays of the plane's points, over all points and by the time of their row.
-struct PointsByRow {
-  static constexpr int kInReadout = 16;  // the fastest vibration has a quarter of a cycle in the time between
-  std::map<int, Eigen::Matrix3d> rows;
-  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
-  size_t count = 0;
-
-  bool enough() const { return count >= 20; }
+// How a rotation of the camera at one time within the readout changes the plane.
+struct RowEffect {
+  double share = 0;  // time since the stamp, as a share of the readout
+  Eigen::Matrix3d by_rotation = Eigen::Matrix3d::Zero();
 };
 
-PointsByRow pointsByRow(const StereoRig& rig, const RowTimes& times, const StereoDepthResult& stereo) {
-  PointsByRow points;
+// By the points of the plane, those of about the same time together. Empty when there are too few.
+std::vector<RowEffect> effectsOf(const StereoRig& rig, const RowTimes& times,
+                                 const StereoDepthResult& stereo) {
+  constexpr int kInReadout = 16;  // the fastest vibration has a quarter of a cycle in the time between
+  constexpr size_t kFewest = 20;
+  struct Points {
+    double shares = 0;
+    size_t count = 0;
+    Eigen::Matrix3d rays = Eigen::Matrix3d::Zero();  // sum of r r'
+  };
+  std::map<int, Points> rows;
+  Points all;
   for (const StereoDepthResult::Point& point : stereo.points) {
     if (!point.on_plane) continue;
     const Eigen::Vector3d ray = rig.ray(point.u, point.v);
     const double share = times.at(point.u, point.v) / times.readoutTime();
-    const auto row = static_cast<int>(std::floor(PointsByRow::kInReadout * share));
-    const Eigen::Matrix3d product = ray * ray.transpose();
-    points.rows.try_emplace(row, Eigen::Matrix3d::Zero()).first->second += product;
-    points.all += product;
-    ++points.count;
+    for (Points* points : {&all, &rows[static_cast<int>(std::floor(kInReadout * share))]}) {
+      points->shares += share;
+      ++points->count;
+      points->rays += ray * ray.transpose();
+    }
   }
-  return points;
+  std::vector<RowEffect> effects;
+  if (all.count < kFewest) return effects;
+  const Eigen::LDLT<Eigen::Matrix3d> fit(all.rays);
+  for (const auto& [row, points] : rows)
+    effects.push_back({points.shares / points.count, -fit.solve(points.rays) * crossMatrix(stereo.plane.g)});
+  return effects;
 }
 
-Eigen::Vector3d meanByTurns(const StereoRig& rig, const RowTimes& times, const GyroTurn& turns,
-                            const StereoDepthResult& stereo, const PointsByRow& points) {
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const StereoDepthResult::Point& point : stereo.points) {
-    if (!point.on_plane) continue;
-    const Eigen::Vector3d ray = rig.ray(point.u, point.v);
-    right += ray * ray.dot(turns.at(times.at(point.u, point.v)).cross(stereo.plane.g));
-  }
-  return points.all.ldlt().solve(right);
-}
-
-// The plane is wanted as it is at the stamp, where the share is 0. One axis may have all of the vibration, so
-// each gets three times the mean variance.
-Eigen::Matrix3d covarianceBy(const Vibration& vibration, const Eigen::Vector3d& g,
-                             const PointsByRow& points) {
-  const Eigen::LDLT<Eigen::Matrix3d> all(points.all);
-  std::map<int, Eigen::Matrix3d> by_rotation;
-  for (const auto& [row, products] : points.rows) by_rotation[row] = -all.solve(products) * crossMatrix(g);
-  by_rotation.try_emplace(0, Eigen::Matrix3d::Zero()).first->second += crossMatrix(g);
+// One axis may have all of the vibration, so each gets three times the mean variance.
+Eigen::Matrix3d covarianceBy(const Vibration& vibration, const std::vector<RowEffect>& effects) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const auto& [row, by_one] : by_rotation)
-    for (const auto& [other, by_other] : by_rotation)
+  for (const RowEffect& one : effects)
+    for (const RowEffect& other : effects)
       covariance +=
-          vibration.alike(double(row - other) / PointsByRow::kInReadout) * by_one * by_other.transpose();
+          vibration.alike(one.share - other.share) * one.by_rotation * other.by_rotation.transpose();
   return 3 * vibration.stddev * vibration.stddev * covariance;
 }
 
@@ -71,13 +66,17 @@ ApproachAngleResult::PlaneByTurns planeByTurns(const StereoRig& rig, const RowTi
   ApproachAngleResult::PlaneByTurns by_turns;
   const bool measured = turns.measured.rows != nullptr, shakes = turns.vibration.found();
   if (times.atOnce() || !(measured || shakes) || !stereo.plane.valid()) return by_turns;
-  const PointsByRow points = pointsByRow(rig, times, stereo);
-  if (!points.enough()) return by_turns;
+  std::vector<RowEffect> effects = effectsOf(rig, times, stereo);
+  if (effects.empty()) return by_turns;
   if (measured) {
-    by_turns.mean = meanByTurns(rig, times, turns.measured, stereo, points);
+    for (const RowEffect& row : effects)
+      by_turns.mean += row.by_rotation * turns.measured.at(row.share * times.readoutTime());
     by_turns.covariance = kLeft * kLeft * by_turns.mean * by_turns.mean.transpose();
   }
-  if (shakes) by_turns.covariance += covarianceBy(turns.vibration, stereo.plane.g, points);
+  if (shakes) {
+    effects.push_back({0, crossMatrix(stereo.plane.g)});  // the plane is wanted as it is at the stamp
+    by_turns.covariance += covarianceBy(turns.vibration, effects);
+  }
   return by_turns;
 }
 

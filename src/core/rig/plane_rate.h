@@ -17,9 +17,8 @@ Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& reado
                            StereoDepthResult& stereo);
 
 /// The same with the step up to this pair; the covariance then contains the effect of the errors of its mean
-/// rates.
-/// Without a step the rate counts as an error of its own size. Without a given readout time and without a
-/// step, the rate of stereo is used instead.
+/// rates. Without a step the rate counts as an error of its own size. Without a given readout time and
+/// without a step, the rate of stereo is used instead.
 void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,
                 StereoDepthResult& stereo);
 

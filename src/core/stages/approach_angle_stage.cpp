@@ -81,15 +81,7 @@ struct ApproachAngleStage::Implementation {
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
                               StereoDepthResult stereo, const AttitudePrior& imu) {
     timings.clear();
-    ApproachAngleResult result;
-    result.stamp = stamp;
-    result.readout = currentReadout();
-    if (parameters.use_imu) result.imu = overSlopingGround(imu);
-    // The rows of a repeated image were exposed at another time.
-    if (repeated(stereo) && result.imu.rows) {
-      result.imu.rows.reset();
-      result.imu.rows_failure = {Reason::kInconsistent, "the left image is that of the pair before"};
-    }
+    ApproachAngleResult result = begun(stamp, repeated(stereo), imu);
     result.failure = checkPair(model, left, right);
     const Failure too_long = readout.follow(stamp);
     if (!result.failure) result.failure = too_long;
@@ -108,13 +100,7 @@ struct ApproachAngleStage::Implementation {
       skip(result, left, stereo);
       return result;
     }
-    const std::optional<RowMotion> motion = tracker.lastMotion(stamp, result.imu);
-    DoubtByReadout plane{Eigen::Vector3d::Zero(), stereo.plane.covariance};
-    plane.by_time = motion ? carryPlane(*motion, result.readout, stereo) : carryPlane(result.readout, stereo);
-    const RowTimes& times = model.left_times.atOnce() ? model.left_unit_times : model.left_times;
-    result.plane_by_turns = planeByTurns(
-        model.rig, times, {motion ? motion->beyond : GyroTurn(), tracker.vibration(stamp)}, stereo);
-    plane.covariance += takeOff(result.plane_by_turns, stereo);
+    const DoubtByReadout plane = carryToStamp(stereo, result);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
@@ -150,6 +136,32 @@ struct ApproachAngleStage::Implementation {
                                      result, direction, has_plane ? stereo.plane.height() : kUnknown);
     }
     return result;
+  }
+
+  // What is known of a pair before its images are looked at.
+  ApproachAngleResult begun(double stamp, bool repeated, const AttitudePrior& imu) const {
+    ApproachAngleResult result;
+    result.stamp = stamp;
+    result.readout = currentReadout();
+    if (parameters.use_imu) result.imu = overSlopingGround(imu);
+    // The rows of a repeated image were exposed at another time.
+    if (repeated && result.imu.rows) {
+      result.imu.rows.reset();
+      result.imu.rows_failure = {Reason::kInconsistent, "the left image is that of the pair before"};
+    }
+    return result;
+  }
+
+  // Carries the plane of stereo to the stamp, as rows are exposed at times of their own.
+  DoubtByReadout carryToStamp(StereoDepthResult& stereo, ApproachAngleResult& result) const {
+    const std::optional<RowMotion> motion = tracker.lastMotion(result.stamp, result.imu);
+    DoubtByReadout plane{Eigen::Vector3d::Zero(), stereo.plane.covariance};
+    plane.by_time = motion ? carryPlane(*motion, result.readout, stereo) : carryPlane(result.readout, stereo);
+    const RowTimes& times = model.left_times.atOnce() ? model.left_unit_times : model.left_times;
+    result.plane_by_turns = planeByTurns(
+        model.rig, times, {motion ? motion->beyond : GyroTurn(), tracker.vibration(result.stamp)}, stereo);
+    plane.covariance += takeOff(result.plane_by_turns, stereo);
+    return plane;
   }
 
   // Far away, the runway is seen before stereo has a plane. Its search waits while another one takes the time

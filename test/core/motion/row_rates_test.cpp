@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <random>
 #include <vector>
 
@@ -33,12 +32,8 @@ Pose vibratingPose(double t) {
 
 /// What a gyroscope on it says of an image. late: error of its stamps, s.
 AttitudePrior gyroAt(double stamp, double late, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) {
-  std::vector<Eigen::Vector3d> rates;
-  for (int i = -20; i <= 20; ++i)
-    rates.push_back(test::motionAt(stamp + late + i * RowTurns::kInterval, vibratingPose).w - bias);
   AttitudePrior prior;
-  prior.rows =
-      std::make_shared<const RowTurns>(-20 * RowTurns::kInterval, rates, 1e-8 * Eigen::Matrix3d::Identity());
+  prior.rows = test::gyroRows(stamp + late, vibratingPose, bias);
   const test::Movement moved(vibratingPose(stamp - kPeriod), vibratingPose(stamp));
   const Eigen::AngleAxisd turn(moved.R);
   prior.rotation = turn.angle() * turn.axis() - kPeriod * bias;

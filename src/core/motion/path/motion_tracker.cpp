@@ -262,6 +262,8 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     const RowMotion& motion = result.ends.now;
     const RowMotion motion_then = then.motion.value_or(motion);
+    // As at the ends of a step, see RowRates::ends().
+    if ((motion_then.beyond.rows == nullptr) != (motion.beyond.rows == nullptr)) continue;
     memory_.matching.spare = std::move(window_matches_);
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
                                     {predicted, seen.normal.vector(), {&times_, motion, motion_then}},
@@ -271,7 +273,6 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
                    window_matches_);
     RowDoubt rows = rowDoubt(result.step.duration, shake_.window, seen, conditions.readout);
     rows.delay.then = motion_then.beyond;
-    if (!rows.delay.then.rows) rows.delay = {};
     const MotionPrior prior{predicted, seen.normal, nullptr, rows};
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);

@@ -37,7 +37,7 @@ void GyroDelay::add(const DelayEffect& effect, double duration) {
 void RowRates::see(const AttitudePrior& imu) { now_ = imu; }
 
 void RowRates::setRate(const AttitudePrior& imu, RowMotion& motion) const {
-  motion.w = imu.rows->meanRate() + bias_.mean();
+  motion.w = meanRate(imu);
   motion.a.setZero();
   motion.beyond = gyroOf(imu);
 }
@@ -53,7 +53,7 @@ StepEnds RowRates::ends(const CameraMotion& step, double duration, double height
 
 std::optional<Eigen::Vector3d> RowRates::measuredNow() const {
   if (!now_.rows) return std::nullopt;
-  return now_.rows->meanRate() + bias_.mean();
+  return meanRate(now_);
 }
 
 RowMotion RowRates::expected(const RowMotion& last, double age, const AttitudePrior& imu) const {

@@ -71,6 +71,7 @@ class RowRates {
  private:
   bool measured() const { return now_.rows && then_.rows; }
   GyroTurn gyroOf(const AttitudePrior& imu) const { return {imu.rows, delay_.late()}; }
+  Eigen::Vector3d meanRate(const AttitudePrior& imu) const { return imu.rows->meanRate() + bias_.mean(); }
   void setRate(const AttitudePrior& imu, RowMotion& motion) const;
 
   TurnHistory history_;

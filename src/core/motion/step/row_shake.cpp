@@ -13,7 +13,8 @@ constexpr int kFewestNodes = 4;
 // Least logarithm of the likelihood ratio at which shake is found. Over flat ground no global shutter came
 // near it: the largest was 30, and mostly no pair has any sign.
 constexpr double kLeastLikelihood = 40;
-// The same for shake to be suspected.
+// The same for shake to be suspected: as rare by chance as 4 sigma. It only widens claims, so it may be
+// wrong.
 constexpr double kSuspected = 10;
 // Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
