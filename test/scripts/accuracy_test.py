@@ -164,7 +164,8 @@ class SensorsTest(unittest.TestCase):
                     for seed in range(count) for height in sensors.HEIGHTS]
 
         with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
-                mock.patch.object(kept, "WORK", Path(folder)), mock.patch.object(sensors, "fly", fly):
+                mock.patch.object(kept, "WORK", Path(folder)), mock.patch.object(sensors, "fly", fly), \
+                mock.patch.object(sensors, "flights", lambda: []):
             sensors.measure(mock.Mock(sensor_snippets=4, jobs=1))
             results = kept.recall("sensors")[1]
         self.assertEqual(len(results["rows"]), len(sensors.SENSORS) * len(sensors.HEIGHTS))
@@ -172,6 +173,18 @@ class SensorsTest(unittest.TestCase):
         self.assertTrue(any("--vibration" in options and "--imu" in options for options in flown))
         lines = [cells(line) for line in sensors.render(results).splitlines()]
         self.assertIn(["rolling shutter", "3 m", "50%", "0%", "100.0 (34.2–100.0); 1.00"] + 4 * ["–"], lines)
+
+
+    def test_a_flight_is_scored_after_its_first_second_where_it_is_valid(self):
+        estimates = [{"stamp_s": str(stamp), "height_valid": valid, "height_m": str(10 + error), "height_stddev_m": "0.1",
+                      "angle_valid": "0", "approach_angle_deg": "", "approach_angle_stddev_deg": ""}
+                     for stamp, valid, error in ((5, "1", 9), (6, "1", 9), (6.5, "1", 0.1), (7, "1", -0.3), (7.5, "0", 9), (8, "1", 0.2))]
+        truths = [{"stamp_s": row["stamp_s"], "height_m": "10", "approach_angle_deg": "3"} for row in estimates]
+        scores = sensors.score_flight(estimates, truths)
+        self.assertEqual((scores["height"]["valid"], scores["height"]["share"]), (0.75, 1 / 3))
+        self.assertAlmostEqual(scores["height"]["mean"], 2.0)  # per cent
+        self.assertAlmostEqual(scores["height"]["percentile_95"], 2.9)
+        self.assertEqual(sensors.flight_row("vibration", "nothing", scores)[2:], ["75.0%", "2.90", "33%", "0.0%"] + 3 * ["–"])
 
 
 class YawTest(unittest.TestCase):
