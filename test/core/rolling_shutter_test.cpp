@@ -81,6 +81,27 @@ test::Pose vibratingPose(double t) {
   return pose;
 }
 
+/// Vibration too slow and too weak to be told from a motion within an image.
+test::Pose weaklyVibratingPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.pitch += 0.03 * test::kDegree * std::sin(2 * M_PI * 27 * t);
+  return pose;
+}
+
+/// The same near twice the frame rate. Images that follow each other see nearly the same phase of it.
+test::Pose aliasedPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.pitch += 0.03 * test::kDegree * std::sin(2 * M_PI * 42 * t);
+  return pose;
+}
+
+test::Pose stronglyVibratingPose(double t) {
+  test::Pose pose = test::movingPose(t);
+  pose.pitch += 0.4 * test::kDegree * std::sin(2 * M_PI * 70 * t);
+  pose.roll += 0.4 * test::kDegree * std::sin(2 * M_PI * 50 * t);
+  return pose;
+}
+
 /// What the chain is told of the shutter.
 enum class Told { kNothing, kToEstimate, kAll };
 
@@ -174,6 +195,45 @@ TEST(RollingShutter, WidensTheClaimsOfHeightsUnderVibration) {
   ASSERT_GT(ratios.count, 20);
   EXPECT_EQ(ratios.shaken, ratios.count) << "the vibration must be seen";
   EXPECT_LT(ratios.height, 3);
+}
+
+TEST(RollingShutter, ClaimsWhatVibrationDoesThatNoImageShows) {
+  for (const auto poseAt : {weaklyVibratingPose, aliasedPose}) {
+    const Ratios ratios = ratiosOf(0.008, Told::kAll, poseAt);
+    ASSERT_GT(ratios.count, 20);
+    EXPECT_EQ(ratios.shaken, 0) << "it must not be seen";
+    EXPECT_LT(ratios.published_angle, 3);
+    EXPECT_LT(ratios.largest_stddev, 3 * test::kDegree);
+  }
+}
+
+TEST(RollingShutter, OneBadImageDisturbsLittleLongerThanItIsInTheWindow) {
+  // The first two images are those of the first step and of all windows up to pair 11.
+  constexpr int kPairs = 24, kBad = 1, kLast = 11, kSettled = 17;
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  Parameters parameters;
+  parameters.rig.readout_time = kReadout;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  int shaken = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    test::Pose (*poseAt)(double) = i <= kBad ? stronglyVibratingPose : steadyPose;
+    const ApproachAngleResult::Motion motion =
+        pipeline
+            .process(stamp, test::rollingImage(poseAt, ground, rig, stamp, kReadout),
+                     test::rollingImage(poseAt, ground, rig, stamp, kReadout, true))
+            .approach.window;
+    shaken += motion.rowsMove();
+    if (i > kLast) {
+      EXPECT_FALSE(motion.rowsMove()) << i;
+    }
+    if (i >= kSettled) {
+      EXPECT_LT(std::sqrt(motion.angle_variance), 0.1 * test::kDegree) << i;
+    }
+  }
+  EXPECT_GT(shaken, 2) << "they must be seen to shake";
 }
 
 // Turns must not be taken out of one image and left in the other, at the ends of the step or of the window.

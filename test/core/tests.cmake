@@ -167,6 +167,7 @@ uav_landing_add_gtest(motion_tracker_test test/core/motion/motion_tracker_test.c
 uav_landing_add_gtest(own_normal_test test/core/motion/own_normal_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(path_angle_filter_test test/core/motion/path_angle_filter_test.cpp)
+uav_landing_add_gtest(image_errors_test test/core/motion/image_errors_test.cpp)
 uav_landing_add_gtest(plane_proof_test test/core/motion/plane_proof_test.cpp)
 uav_landing_add_gtest(common_gain_test test/core/motion/common_gain_test.cpp)
 uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_test.cpp

@@ -22,24 +22,35 @@ struct Outcome {
   double rms() const { return std::sqrt(squares / count); }
 };
 
+// Vibration that turns the rows of each image. It is told only that rows have times.
+struct Vibrating {
+  double error = 0;  // 1 sigma of an image's, rad s
+  bool rolling = true;
+};
+
 // Feeds steps and chords of a path whose angle at time t is given, and compares with the truth of the last
 // step.
-Outcome follow(const std::function<double(double)>& angle, double duration, double from, unsigned seed) {
+Outcome follow(const std::function<double(double)>& angle, double duration, double from, unsigned seed,
+               const Vibrating& vibrating = {0, false}) {
   PathAngleFilter filter(0.5);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  std::vector<double> truths;
+  std::vector<double> truths, of_images = {vibrating.error * normal(random)};
   Outcome outcome;
   for (int k = 1; k <= duration * kRate; ++k) {
     const double now = k / kRate;
     truths.push_back(angle(now - 0.5 / kRate));
-    const PathAngleFilter::Measurement step{truths.back() + kStepNoise * normal(random),
-                                            kStepNoise * kStepNoise, 1 / kRate};
+    PathAngleFilter::Measurement step{truths.back() + kStepNoise * normal(random), kStepNoise * kStepNoise,
+                                      1 / kRate};
+    if (vibrating.error > 0) of_images.push_back(vibrating.error * normal(random));
+    step.angle += vibrating.error > 0 ? (of_images[k] - of_images[k - 1]) * kRate : 0;
+    step.rolling = vibrating.rolling;
     PathAngleFilter::Measurement chord = step;
     if (truths.size() >= 10) {
       double mean = 0;
       for (int i = 0; i < 10; ++i) mean += truths[truths.size() - 1 - i] / 10;
       chord = {mean + kChordNoise * normal(random), kChordNoise * kChordNoise, 0.5};
+      if (vibrating.error > 0) chord.angle += (of_images[k] - of_images[k - 10]) / 0.5;
     }
     const PathAngleFilter::Estimate estimate = filter.update(now, step, chord);
     if (now < from) continue;
@@ -99,6 +110,27 @@ TEST(PathAngleFilter, ClaimsATrueVarianceInGusts) {
   EXPECT_GT(mean_square, 0.6);
   EXPECT_LT(mean_square, 1.5);
   EXPECT_LT(outcome.rms(), kStepNoise);
+}
+
+TEST(PathAngleFilter, ClaimsWhatVibrationDoesToARollingShutter) {
+  const auto glide = [](double) { return 5 * kDegree; };
+  for (const double error : {0.01 * kDegree, 0.04 * kDegree, 0.2 * kDegree}) {
+    const Outcome told = follow(glide, 120, 1, 3, {error}),
+                  not_told = follow(glide, 120, 1, 3, {error, false});
+    EXPECT_LT(told.squares_over_variance / told.count, 1.5) << error / kDegree;
+    EXPECT_GT(told.squares_over_variance / told.count, 0.35) << error / kDegree;
+    EXPECT_LT(told.rms(), not_told.rms());
+    EXPECT_GT(not_told.squares_over_variance / not_told.count, 2);
+  }
+}
+
+TEST(PathAngleFilter, RowsThatDoNotShakeCostLittle) {
+  const auto gusts = [](double t) {
+    return (4 + 0.4 * std::sin(2.5 * t) + 0.2 * std::sin(6.1 * t)) * kDegree;
+  };
+  const Outcome rolling = follow(gusts, 120, 3, 7, {0}), global = follow(gusts, 120, 3, 7);
+  EXPECT_LT(rolling.rms(), 1.1 * global.rms());
+  EXPECT_GT(rolling.squares_over_variance / rolling.count, 0.5);
 }
 
 /// Errors of a steady glide's angle and its claim after 0.7 s, over many runs, where the ground's normal is

@@ -96,7 +96,8 @@ MotionDescription describe(const Expected<MotionEstimate>& estimate, const Motio
                      facts.duration,
                      std::sqrt(of_normal),
                      angleByReadout(*estimate, facts.readout),
-                     shaken};
+                     shaken,
+                     facts.rolling};
   if (shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return described;
 }

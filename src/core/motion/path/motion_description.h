@@ -17,6 +17,7 @@ struct MotionFacts {
   size_t matches = 0;
   ReadoutEstimate readout;
   bool may_roll = false;  ///< whether rows have times, or may have
+  bool rolling = false;   ///< whether they are taken to have
   /// Least translation, in its standard deviations, for an angle.
   double min_motion = 0;
 };

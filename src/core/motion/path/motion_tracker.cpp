@@ -87,14 +87,18 @@ void MotionTracker::forgetRows() {
   filter_.reset();
 }
 
-ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditions& conditions) const {
+ReadoutDoubt MotionTracker::doubtOf(const StepConditions& conditions) const {
   if (!conditions.readout.known()) return {};
   return {&unit_times_, conditions.readout.time};
 }
 
+bool MotionTracker::rolls(const ReadoutEstimate& readout) const {
+  return mayRoll() && (readout.given() || readout.known());
+}
+
 ShakeWatch MotionTracker::watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const {
   if (!mayRoll()) return {};
-  return {times_.atOnce() ? &unit_times_ : &times_, &memory, readout.given() || readout.known()};
+  return {times_.atOnce() ? &unit_times_ : &times_, &memory, rolls(readout)};
 }
 
 RowDoubt MotionTracker::rowDoubt(double duration, ShakeMemory& memory, const GroundInView& seen,
@@ -108,7 +112,7 @@ RowDoubt MotionTracker::rowDoubt(double duration, ShakeMemory& memory, const Gro
 
 MotionFacts MotionTracker::factsOf(double duration, const std::vector<TemporalMatch>& matches,
                                    const ReadoutEstimate& readout) const {
-  return {duration, matches.size(), readout, mayRoll(), parameters_.min_motion};
+  return {duration, matches.size(), readout, mayRoll(), rolls(readout), parameters_.min_motion};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -161,7 +165,6 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
   }
   rates_.see(conditions.imu);
   shake_.step.begin();
-  shake_.window.begin();
   if (past_.empty()) {
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
@@ -192,7 +195,7 @@ void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, con
                         regular,
                         conditions.time,
                         &times_,
-                        doubtOf(seen, conditions),
+                        doubtOf(conditions),
                         rowDoubt(duration, shake_.step, seen, conditions.readout)};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
@@ -268,9 +271,12 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
                                     {predicted, seen.normal.vector(), {&times_, motion, motion_then}},
                                     {parameters_.window_radius, parameters_.min_zncc, 0}, memory_.matching);
-    const ReadoutDoubt doubt = doubtOf(seen, conditions);
+    const ReadoutDoubt doubt = doubtOf(conditions);
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
+    // One image that is bad must not count in each pair that it is compared with.
+    if (then.stamp != shake_.window_then) shake_.window.begin();
+    shake_.window_then = then.stamp;
     RowDoubt rows = rowDoubt(result.step.duration, shake_.window, seen, conditions.readout);
     rows.delay.then = motion_then.beyond;
     const MotionPrior prior{predicted, seen.normal, nullptr, rows};

@@ -96,8 +96,9 @@ class MotionTracker {
     std::optional<RowMotion> motion;    ///< velocities while its rows were exposed
   };
 
-  ReadoutDoubt doubtOf(const GroundInView& seen, const StepConditions& conditions) const;
+  ReadoutDoubt doubtOf(const StepConditions& conditions) const;
   bool mayRoll() const { return !times_.atOnce() || !unit_times_.atOnce(); }
+  bool rolls(const ReadoutEstimate& readout) const;
   ShakeWatch watchOf(ShakeMemory& memory, const ReadoutEstimate& readout) const;
   RowDoubt rowDoubt(double duration, ShakeMemory& memory, const GroundInView& seen,
                     const ReadoutEstimate& readout) const;
@@ -128,8 +129,9 @@ class MotionTracker {
   RowRates rates_;
   struct Shake {
     ShakeMemory step, window;
-    Vibration found;   // by the last step, or by the window when it is larger there
-    double stamp = 0;  // of that step, s
+    Vibration found;         // by the last step, or by the window when it is larger there
+    double stamp = 0;        // of that step, s
+    double window_then = 0;  // stamp of the image that the window began with, s
   } shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;

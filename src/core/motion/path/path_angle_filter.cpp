@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "motion/path/image_errors.h"
+
 namespace uav_landing {
 namespace {
 
@@ -17,9 +19,17 @@ constexpr double kDegree = M_PI / 180;
 // the angle open.
 constexpr std::array<double, 6> kRates = {0.03 * kDegree, 0.3 * kDegree, 1 * kDegree,
                                           3 * kDegree,    10 * kDegree,  30 * kDegree};
+// Standard deviations of the errors that vibration makes in images, rad s. At 20 Hz, steps are off by a
+// twentieth of a degree to any angle.
+constexpr std::array<double, 7> kShakes = {0.002 * kDegree, 0.005 * kDegree, 0.0125 * kDegree, 0.03 * kDegree,
+                                           0.08 * kDegree,  0.2 * kDegree,   0.5 * kDegree};
 constexpr double kCorrelationTime = 1.0;       // s, of the rate
 constexpr double kStartStddev = 45 * kDegree;  // of the angle before any measurement
 constexpr double kMemory = 2.0;  // s, after which a measurement has little weight in the choice of the model
+// Vibration has to be within 3 Hz of a multiple of the frame rate for similar errors. Gusts look like them.
+constexpr double kSimilarPrior = -3;
+// Logarithm of the least weight that is kept of a model with a rolling shutter, beside the largest.
+constexpr double kLeastWeight = -15;
 constexpr double kStampRounding = 1e-3;  // s
 constexpr size_t kMostSteps = 50;  // however short they are, as the computing time grows with the third power
 
@@ -44,20 +54,44 @@ struct Posterior {
   double by_readout = 0;  // effect on the mean
 };
 
+// 1 sigma of what a model has.
+struct Model {
+  double rate;            // rad/s
+  double single_images;   // errors of images, each with one of its own, rad s
+  double similar_images;  // the same, and similar in images that follow each other
+  double log_prior;       // logarithm of its weight beforehand, beside the others
+};
+
+// The first ones are those for a global shutter.
+std::vector<Model> allModels() {
+  std::vector<Model> models;
+  for (const double rate : kRates) models.push_back({rate, 0, 0, 0});
+  for (const double shake : kShakes) {
+    for (const double rate : kRates) models.push_back({rate, shake, 0, 0});
+    for (const double rate : kRates) models.push_back({rate, 0, shake, kSimilarPrior});
+  }
+  return models;
+}
+
+const std::vector<Model>& models() {
+  static const std::vector<Model> all = allModels();
+  return all;
+}
+
 // Mean and variance of the mixture of posteriors. rate_stddev: that of the model with the largest weight.
-PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& posteriors,
-                                  const std::array<double, kRates.size()>& log_weights) {
+PathAngleFilter::Estimate mixture(const std::vector<Posterior>& posteriors,
+                                  const std::vector<double>& log_weights) {
   PathAngleFilter::Estimate estimate;
   double total = 0, mean = 0, square = 0, heaviest = 0, by_readout = 0;
-  for (size_t m = 0; m < kRates.size(); ++m) {
-    const double weight = std::exp(log_weights[m]);
+  for (size_t m = 0; m < posteriors.size(); ++m) {
+    const double weight = std::exp(log_weights[m] + models()[m].log_prior);
     total += weight;
     mean += weight * posteriors[m].mean;
     by_readout += weight * posteriors[m].by_readout;
     square += weight * (posteriors[m].variance + posteriors[m].mean * posteriors[m].mean);
     if (weight > heaviest) {
       heaviest = weight;
-      estimate.rate_stddev = kRates[m];
+      estimate.rate_stddev = models()[m].rate;
     }
   }
   mean /= total;
@@ -77,6 +111,7 @@ struct PathAngleFilter::Equations {
   Eigen::VectorXd y;
   Eigen::MatrixXd noise;
   Eigen::VectorXd by_readout;  // one error, common to all rows
+  ImageErrors images;          // those of the rows, with a rolling shutter
   double reference = 0;        // subtracted from y, rad
   bool has_chord = false;      // whether the chord is a measurement of its own
 };
@@ -84,7 +119,7 @@ struct PathAngleFilter::Equations {
 // The equations that are measurements, prepared for all models.
 class PathAngleFilter::Regression {
  public:
-  explicit Regression(const Equations& all)
+  Regression(const Equations& all, bool rolling)
       : rows_(all.y.size() - (all.has_chord ? 0 : 1)),
         y_(all.y.head(rows_)),
         by_readout_(all.by_readout.head(rows_)),
@@ -94,15 +129,23 @@ class PathAngleFilter::Regression {
     variance_of_last_ = unit(unit.rows() - 1, unit.cols() - 1);
     with_last_ = H * unit.col(unit.cols() - 1);
     of_rate_ = H * unit * H.transpose();
+    if (rolling) {
+      of_single_images_ = all.images.ofSingleImages().topLeftCorner(rows_, rows_);
+      of_similar_images_ = all.images.ofSimilarImages().topLeftCorner(rows_, rows_);
+    }
     by_start_ = H.rowwise().sum();
     noise_ += kStartStddev * kStartStddev * by_start_ * by_start_.transpose();
   }
 
   // Gaussian posterior of the last angle under one model. earlier: number of measurements that are not new.
-  Posterior condition(double rate_stddev, Eigen::Index earlier) const {
+  Posterior condition(const Model& model, Eigen::Index earlier) const {
     constexpr double kStart = kStartStddev * kStartStddev;
-    const double rate = rate_stddev * rate_stddev;
-    const Eigen::LLT<Eigen::MatrixXd> llt(rate * of_rate_ + noise_);
+    const double rate = model.rate * model.rate;
+    Eigen::MatrixXd covariance = rate * of_rate_ + noise_;
+    if (model.single_images > 0) covariance += model.single_images * model.single_images * of_single_images_;
+    if (model.similar_images > 0)
+      covariance += model.similar_images * model.similar_images * of_similar_images_;
+    const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
     Eigen::MatrixXd solved(rows_, 2);  // the measurements, and their covariance with the last angle
     solved << y_, rate * with_last_ + kStart * by_start_;
     llt.matrixL().solveInPlace(solved);
@@ -129,13 +172,14 @@ class PathAngleFilter::Regression {
   double variance_of_last_;
   Eigen::VectorXd with_last_;
   Eigen::MatrixXd of_rate_;
+  Eigen::MatrixXd of_single_images_, of_similar_images_;  // the same for errors of images, see ImageErrors
   Eigen::VectorXd by_start_;  // derivatives of the measurements by the angle at the start
 };
 
 void PathAngleFilter::reset() {
   steps_.clear();
   shortest_ = kNone;
-  log_weights_.fill(0);
+  log_weights_.clear();
 }
 
 void PathAngleFilter::add(double stamp, const Measurement& step) {
@@ -178,6 +222,10 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) all.noise(i, j) = std::pow(std::min(by_normal[i], by_normal[j]), 2);
   all.noise.diagonal() += variance;
+  if (step.rolling) {
+    for (const Step& past : steps_) all.images.add(past.stamp - past.measurement.duration, past.stamp);
+    all.images.add(steps_.back().stamp - chord.duration, steps_.back().stamp);
+  }
   // A chord is no additional measurement when it is the step itself, or when some of its steps are missing.
   all.has_chord = chord.duration > step.duration + kStampRounding &&
                   std::abs(covered - chord.duration) < 0.5 * step.duration;
@@ -191,17 +239,21 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
                                                   const Measurement& chord) {
   add(stamp, step);
   const Equations all = equations(chord);
-  const Regression regression(all);
+  const Regression regression(all, step.rolling);
   const auto steps = static_cast<Eigen::Index>(steps_.size());
   const double forget = std::exp(-step.duration / kMemory);
-  std::array<Posterior, kModels> posteriors;
-  for (int m = 0; m < kModels; ++m) {
-    posteriors[m] = regression.condition(kRates[m], steps - 1);
+  std::vector<Posterior> posteriors(step.rolling ? models().size() : kRates.size());
+  log_weights_.resize(posteriors.size());
+  for (size_t m = 0; m < posteriors.size(); ++m) {
+    posteriors[m] = regression.condition(models()[m], steps - 1);
     log_weights_[m] = forget * log_weights_[m] + posteriors[m].log_evidence;
   }
   const double largest = *std::max_element(log_weights_.begin(), log_weights_.end());
   for (double& weight : log_weights_) weight -= largest;
   Estimate estimate = mixture(posteriors, log_weights_);
+  // One bad image must not count for as long as vibration does.
+  if (step.rolling)
+    for (double& weight : log_weights_) weight = std::max(weight, kLeastWeight);
   estimate.angle += all.reference;
   // The estimate is the angle at the middle of the step. After a gap that is longer ago than usual.
   shortest_ = std::min(shortest_, step.duration);

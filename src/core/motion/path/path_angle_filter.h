@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <deque>
 #include <limits>
+#include <vector>
 
 namespace uav_landing {
 
@@ -20,6 +20,10 @@ namespace uav_landing {
 ///
 /// The error of the ground normal is about the same in all measurements. A long chord hardly depends on the
 /// given normal, because it sees the ground from very different places.
+///
+/// Vibration turns the rows of a rolling shutter, and not every such turn shows in the images. It is an error
+/// of an image. A step has that of its last image, minus that of its first, so it makes the steps' angles
+/// jump to and fro. Further models have such errors of several sizes.
 class PathAngleFilter {
  public:
   /// window: time over which measurements are used, s.
@@ -33,7 +37,8 @@ class PathAngleFilter {
     /// Effect of 1 sigma of the readout time, when that is estimated, rad. The sign counts: it is one error,
     /// common to all measurements.
     double by_readout = 0;
-    bool shaken = false;  ///< rows shake (see RowShake), so the variance does not describe the error
+    bool shaken = false;   ///< rows shake (see RowShake), so the variance does not describe the error
+    bool rolling = false;  ///< rows have times of their own, so vibration may turn them unseen
   };
   struct Estimate {
     double angle = 0;  ///< at the middle of the last step, rad
@@ -48,7 +53,6 @@ class PathAngleFilter {
   void reset();
 
  private:
-  static constexpr int kModels = 6;
   struct Step {
     double stamp;
     Measurement measurement;
@@ -62,8 +66,8 @@ class PathAngleFilter {
   double window_;
   std::deque<Step> steps_;  // oldest first
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  double shortest_ = kNone;  // duration of the shortest step so far, s
-  std::array<double, kModels> log_weights_{};
+  double shortest_ = kNone;          // duration of the shortest step so far, s
+  std::vector<double> log_weights_;  // of the models
 };
 
 }  // namespace uav_landing

@@ -31,7 +31,7 @@ class ShakeMemory {
   void add(const Likelihoods& pair);
   /// Instead of add(), for a pair without a sign of shake.
   void fade() { add({}); }
-  /// Call it before each pair.
+  /// Call it before each pair of images that counts on its own.
   void begin() { before_ = sums_; }
   Size likeliest() const;
 
