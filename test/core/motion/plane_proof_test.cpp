@@ -24,6 +24,7 @@ struct Scene {
       if (i >= followed) continue;
       TemporalMatch match;
       match.now = {u, 30};
+      match.then = {u, 30};
       matches.push_back(match);
       estimate.inliers.push_back(i < on_plane ? 1 : 0);
     }
