@@ -131,6 +131,22 @@ TEST(PathAngleFilter, RowsThatDoNotShakeCostLittle) {
   const Outcome rolling = follow(gusts, 120, 3, 7, {0}), global = follow(gusts, 120, 3, 7);
   EXPECT_LT(rolling.rms(), 1.1 * global.rms());
   EXPECT_GT(rolling.squares_over_variance / rolling.count, 0.5);
+  EXPECT_LT(rolling.squares_over_variance / rolling.count, 1.5);
+}
+
+TEST(PathAngleFilter, TakesNoFlareForVibration) {
+  const auto flare = [](double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; };
+  Outcome during;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Outcome one = follow(flare, 7, 4.6, seed, {0});
+    during.squares += one.squares;
+    during.squares_over_variance += one.squares_over_variance;
+    during.lag_sum += one.lag_sum;
+    during.count += one.count;
+  }
+  EXPECT_LT(during.rms(), kStepNoise);
+  EXPECT_LT(std::abs(during.lag_sum / during.count), 1.5 * kDegree * 0.04);
+  EXPECT_LT(during.squares_over_variance / during.count, 1.5);
 }
 
 /// Errors of a steady glide's angle and its claim after 0.7 s, over many runs, where the ground's normal is

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStampRounding = 1e-3;  // s
 // Time over which similar errors stay similar, s: that of 1 to 3 Hz. Slower ones hardly differ between the
-// images, and do little harm.
+// images, so their angles change slowly, as those of a path do.
 constexpr double kSimilar = 0.1;
 
 }  // namespace
@@ -27,8 +27,9 @@ void ImageErrors::add(double from, double to) {
 Eigen::MatrixXd ImageErrors::derivatives() const {
   Eigen::MatrixXd by_image = Eigen::MatrixXd::Zero(movements_.size(), stamps_.size());
   for (size_t i = 0; i < movements_.size(); ++i) {
-    by_image(i, movements_[i].to) += 1 / movements_[i].duration;
-    by_image(i, movements_[i].from) -= 1 / movements_[i].duration;
+    if (movements_[i].from == movements_[i].to) continue;
+    by_image(i, movements_[i].to) = 1 / movements_[i].duration;
+    by_image(i, movements_[i].from) = -1 / movements_[i].duration;
   }
   return by_image;
 }

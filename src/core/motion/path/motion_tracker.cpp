@@ -275,14 +275,18 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
     // One image that is bad must not count in each pair that it is compared with.
+    const ShakeMemory kept = shake_.window;
     if (then.stamp != shake_.window_then) shake_.window.begin();
-    shake_.window_then = then.stamp;
     RowDoubt rows = rowDoubt(result.step.duration, shake_.window, seen, conditions.readout);
     rows.delay.then = motion_then.beyond;
     const MotionPrior prior{predicted, seen.normal, nullptr, rows};
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
-    if (!estimate) continue;
+    if (!estimate) {
+      shake_.window = kept;
+      continue;
+    }
+    shake_.window_then = then.stamp;
     const MotionDescription described =
         describe(estimate, factsOf(duration, window_matches_, conditions.readout));
     result.window = described.motion;

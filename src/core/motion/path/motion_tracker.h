@@ -129,9 +129,9 @@ class MotionTracker {
   RowRates rates_;
   struct Shake {
     ShakeMemory step, window;
-    Vibration found;         // by the last step, or by the window when it is larger there
-    double stamp = 0;        // of that step, s
-    double window_then = 0;  // stamp of the image that the window began with, s
+    Vibration found;                    // by the last step, or by the window when it is larger there
+    double stamp = 0;                   // of that step, s
+    std::optional<double> window_then;  // stamp of the image that the window began with, s
   } shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -20,7 +21,7 @@ constexpr double kDegree = M_PI / 180;
 constexpr std::array<double, 6> kRates = {0.03 * kDegree, 0.3 * kDegree, 1 * kDegree,
                                           3 * kDegree,    10 * kDegree,  30 * kDegree};
 // Standard deviations of the errors that vibration makes in images, rad s. At 20 Hz, steps are off by a
-// twentieth of a degree to any angle.
+// twentieth of a degree to more than any valid angle.
 constexpr std::array<double, 7> kShakes = {0.002 * kDegree, 0.005 * kDegree, 0.0125 * kDegree, 0.03 * kDegree,
                                            0.08 * kDegree,  0.2 * kDegree,   0.5 * kDegree};
 constexpr double kCorrelationTime = 1.0;       // s, of the rate
@@ -28,7 +29,8 @@ constexpr double kStartStddev = 45 * kDegree;  // of the angle before any measur
 constexpr double kMemory = 2.0;  // s, after which a measurement has little weight in the choice of the model
 // Vibration has to be within 3 Hz of a multiple of the frame rate for similar errors. Gusts look like them.
 constexpr double kSimilarPrior = -3;
-// Logarithm of the least weight that is kept of a model with a rolling shutter, beside the largest.
+// Logarithm of the least weight, beside the largest, that any model keeps with a rolling shutter. So after
+// one bad image the models without vibration come back soon.
 constexpr double kLeastWeight = -15;
 constexpr double kStampRounding = 1e-3;  // s
 constexpr size_t kMostSteps = 50;  // however short they are, as the computing time grows with the third power
@@ -62,7 +64,7 @@ struct Model {
   double log_prior;       // logarithm of its weight beforehand, beside the others
 };
 
-// The first ones are those for a global shutter.
+// All rates in turn for each kind of vibration. The first ones are those for a global shutter.
 std::vector<Model> allModels() {
   std::vector<Model> models;
   for (const double rate : kRates) models.push_back({rate, 0, 0, 0});
@@ -78,22 +80,21 @@ const std::vector<Model>& models() {
   return all;
 }
 
-// Mean and variance of the mixture of posteriors. rate_stddev: that of the model with the largest weight.
+// Mean and variance of the mixture of posteriors. rate_stddev: the one with the largest weight.
 PathAngleFilter::Estimate mixture(const std::vector<Posterior>& posteriors,
                                   const std::vector<double>& log_weights) {
   PathAngleFilter::Estimate estimate;
-  double total = 0, mean = 0, square = 0, heaviest = 0, by_readout = 0;
+  double total = 0, mean = 0, square = 0, by_readout = 0;
+  std::array<double, kRates.size()> of_rates{};
   for (size_t m = 0; m < posteriors.size(); ++m) {
     const double weight = std::exp(log_weights[m] + models()[m].log_prior);
     total += weight;
     mean += weight * posteriors[m].mean;
     by_readout += weight * posteriors[m].by_readout;
     square += weight * (posteriors[m].variance + posteriors[m].mean * posteriors[m].mean);
-    if (weight > heaviest) {
-      heaviest = weight;
-      estimate.rate_stddev = models()[m].rate;
-    }
+    of_rates[m % kRates.size()] += weight;
   }
+  estimate.rate_stddev = kRates[std::max_element(of_rates.begin(), of_rates.end()) - of_rates.begin()];
   mean /= total;
   estimate.angle = mean;
   estimate.variance = square / total - mean * mean;
@@ -251,7 +252,6 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
   const double largest = *std::max_element(log_weights_.begin(), log_weights_.end());
   for (double& weight : log_weights_) weight -= largest;
   Estimate estimate = mixture(posteriors, log_weights_);
-  // One bad image must not count for as long as vibration does.
   if (step.rolling)
     for (double& weight : log_weights_) weight = std::max(weight, kLeastWeight);
   estimate.angle += all.reference;

@@ -21,8 +21,8 @@ namespace uav_landing {
 /// The error of the ground normal is about the same in all measurements. A long chord hardly depends on the
 /// given normal, because it sees the ground from very different places.
 ///
-/// Vibration turns the rows of a rolling shutter, and not every such turn shows in the images. It is an error
-/// of an image. A step has that of its last image, minus that of its first, so it makes the steps' angles
+/// Vibration turns the rows of a rolling shutter, and not every such turn shows in the images. It gives the
+/// image an error. A step has that of its last image, minus that of its first, so it makes the steps' angles
 /// jump to and fro. Further models have such errors of several sizes.
 class PathAngleFilter {
  public:
@@ -45,7 +45,7 @@ class PathAngleFilter {
     /// rad^2. After a step that is longer than usual, it also covers the additional change of the angle since
     /// that middle.
     double variance = 0;
-    double rate_stddev = 0;  ///< of the rate in the model with the largest weight, rad/s
+    double rate_stddev = 0;  ///< the rate with the largest weight, rad/s
   };
 
   /// stamp: end of the step, s. chord: over several steps, or equal to the step when there is no chord.
