@@ -37,9 +37,9 @@ of 5 to 40 ms, a fifth of them from bottom to top. The stamp is that of the midd
 `--vibration` the rig is shaken at 15 to 120 Hz by up to 0.2°, less when it is faster. The chain is told the readout time. *Valid* is the
 share of snippets with a valid height, and with a valid angle. The other columns are those of [true uncertainty](#true-uncertainty).
 
-A snippet is over after 0.6 s, so these are the first pairs of a flight that shakes. Pitch and roll of stereo's plane claim too little where
-vibration is not found yet, or is slower than a third of a cycle in a readout. The inertial sensor has eight messages in a cycle of the vibration, and noise
-and bias as `imu_rate_stddev_deg` and `imu_rate_bias_deg` say. Below 25 Hz it is slower than 200 Hz, so it is not used within images.
+A snippet is over after 0.6 s, so these are the first pairs of a flight that shakes. Pitch and roll of stereo's plane claim too little
+where vibration is not found yet, or is slower than a third of a cycle in a readout. The inertial sensor has eight messages in a cycle of
+the vibration, and noise and bias as `imu_rate_stddev_deg` and `imu_rate_bias_deg` say. Below 25 Hz it is slower than 200 Hz, so it is not used within images.
 
 """
 
