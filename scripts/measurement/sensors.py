@@ -1,22 +1,22 @@
 """Section `sensors`: rolling shutters, vibration and an inertial sensor: two scenes, and claims over random snippets."""
 
-import csv
-
 import numpy as np
 
 from . import consistency, kept, sets
-from .campaign import fly, number
+from .campaign import fly
+from .indicator_summary import QUANTITIES
 from .markdown import number as cell
 from .markdown import table
 from .programs import ROOT, WORK, run
+from evaluation.scores import SETTLING_TIME, score_quantity  # programs.py has put them in the path
+from evaluation.tables import join, read_estimates, read_truth
 
-# scene, what is told, the parameters that tell it
-FLIGHTS = (("rolling_shutter", "the readout time", "rig: {readout_time: 0.03}"),
-           ("rolling_shutter", "nothing", "{}"),
-           ("vibration", "the readout time, with an inertial sensor", "rig: {readout_time: 0.02}"),
-           ("vibration", "the readout time", "{rig: {readout_time: 0.02}, approach_angle: {use_imu: false}}"),
-           ("vibration", "nothing", "{}"))
-SETTLING_TIME = 1.0  # s
+# By the scene: what is told, and the parameters that tell it.
+SCENES = {"rolling_shutter": (("the readout time", "rig: {readout_time: 0.03}"),
+                              ("nothing", "{}")),
+          "vibration": (("the readout time, with an inertial sensor", "rig: {readout_time: 0.02}"),
+                        ("the readout time", "{rig: {readout_time: 0.02}, approach_angle: {use_imu: false}}"),
+                        ("nothing", "{}"))}
 FLIGHT_HEADER = ("scene", "told", "height valid", "error, %: 95 %", "in 95 %", "angle valid", "error, °: mean", "95 %", "in 95 %")
 FLIGHT_TEXT = """### Two scenes
 Whole approaches of `config/simulator/scenes`, later than 1 s after the first frame. `rolling_shutter` reads its rows within 30 ms in bumpy air.
@@ -39,46 +39,35 @@ share of snippets with a valid height, and with a valid angle. The other columns
 
 A snippet is over after 0.6 s, so these are the first pairs of a flight that shakes. Pitch and roll of stereo's plane claim too little
 where vibration is not found yet, or is slower than a third of a cycle in a readout. The inertial sensor has eight messages in a cycle of
-the vibration, and noise and bias as `imu_rate_stddev_deg` and `imu_rate_bias_deg` say. Below 25 Hz it is slower than 200 Hz, so it is not used within images.
+the vibration, and noise and bias as `imu_rate_stddev_deg` and `imu_rate_bias_deg` say. Below 25 Hz it is slower than 200 Hz, so it is not
+used within images.
 
 """
 
 
-def score_flight(estimates, truths):
-    """Scores the rows of an approach by those of its truth."""
-    true = {float(row["stamp_s"]): row for row in truths}
-    rows = [(row, true[float(row["stamp_s"])]) for row in estimates
-            if float(row["stamp_s"]) > float(estimates[0]["stamp_s"]) + SETTLING_TIME]
+def score_flight(estimates, truth):
+    """Scores a flight by its files. Each quantity counts where its own flag is set: heights do without an angle."""
+    known = read_truth(str(truth))
+    joined = join(known, read_estimates(str(estimates)))
+    scored = joined.stamp > joined.stamp[0] + SETTLING_TIME
     scores = {}
-    for name, unit, flag in (("height", "m", "height_valid"), ("approach_angle", "deg", "angle_valid")):
-        valid = [pair for pair in rows if pair[0][flag] == "1"]
-        truth = np.array([number(row, f"{name}_{unit}") for _, row in valid])
-        error = np.abs(np.array([number(row, f"{name}_{unit}") for row, _ in valid]) - truth)
-        stddev = np.array([number(row, f"{name}_stddev_{unit}") for row, _ in valid])
-        if name == "height":
-            error, stddev = 100 * error / truth, 100 * stddev / truth
-        scores[name] = {"valid": len(valid) / len(rows), "mean": None, "percentile_95": None, "share": None}
-        if valid:
-            scores[name].update(mean=float(np.mean(error)), percentile_95=float(np.percentile(error, 95)),
-                                share=float(np.mean(error <= consistency.SIGMAS_95 * stddev)))
+    for name, column, flag, _ in QUANTITIES:
+        valid = scored & (joined.estimate(flag) == 1)
+        result = score_quantity(known, joined, valid, name, column, column, column.rsplit("_", 1)[1])
+        scores[name] = {"valid": float(np.mean(valid[scored])), **(result if isinstance(result, dict) else {})}
     return scores
 
 
 def flights():
     """Flies the scenes, and returns scene, what was told, and scores."""
     found = []
-    for scene in dict.fromkeys(scene for scene, _, _ in FLIGHTS):
+    config, estimates = WORK / "sensors" / "told.yaml", WORK / "sensors" / "estimates.csv"
+    for scene, runs in SCENES.items():
         bag, truth = sets.make_bag(f"sensors/{scene}", ROOT / f"config/simulator/scenes/{scene}.yaml")
-        with truth.open() as file:
-            truths = list(csv.DictReader(file))
-        config, estimates = WORK / "sensors" / "told.yaml", WORK / "sensors" / "estimates.csv"
-        for name, told, parameters in FLIGHTS:
-            if name != scene:
-                continue
+        for told, parameters in runs:
             config.write_text(parameters + "\n", encoding="utf-8")
             run("process_bag", "--input", bag, "--config", config, "--csv", estimates)
-            with estimates.open() as file:
-                found.append([scene, told, score_flight(list(csv.DictReader(file)), truths)])
+            found.append([scene, told, score_flight(estimates, truth)])
             print("sensors:", found[-1], flush=True)
         bag.unlink()
     return found
@@ -101,8 +90,10 @@ def measure(options):
 
 def flight_row(scene, told, scores):
     height, angle = scores["height"], scores["approach_angle"]
-    return [f"`{scene}`", told, f"{height['valid']:.1%}", cell(height["percentile_95"], ".2f"), cell(height["share"], ".0%"),
-            f"{angle['valid']:.1%}", cell(angle["mean"], ".3f"), cell(angle["percentile_95"], ".3f"), cell(angle["share"], ".0%")]
+    percent = height.get("percent", {}).get("percentile_95")
+    return [f"`{scene}`", told, f"{height['valid']:.1%}", cell(percent, ".2f"), cell(height.get("within_claimed_95"), ".0%"),
+            f"{angle['valid']:.1%}", cell(angle.get("mean"), ".3f"), cell(angle.get("percentile_95"), ".3f"),
+            cell(angle.get("within_claimed_95"), ".0%")]
 
 
 def render(results):

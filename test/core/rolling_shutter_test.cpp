@@ -75,29 +75,22 @@ test::Pose gustyPose(double t) {
 }
 
 /// The same path while the rig vibrates about its pitch axis.
-test::Pose vibratingPose(double t) {
+test::Pose pitchingPose(double t, double degrees, double hertz) {
   test::Pose pose = test::movingPose(t);
-  pose.pitch += 0.15 * test::kDegree * std::sin(2 * M_PI * 47 * t);
+  pose.pitch += degrees * test::kDegree * std::sin(2 * M_PI * hertz * t);
   return pose;
 }
+
+test::Pose vibratingPose(double t) { return pitchingPose(t, 0.15, 47); }
 
 /// Vibration too slow and too weak to be told from a motion within an image.
-test::Pose weaklyVibratingPose(double t) {
-  test::Pose pose = test::movingPose(t);
-  pose.pitch += 0.03 * test::kDegree * std::sin(2 * M_PI * 27 * t);
-  return pose;
-}
+test::Pose weaklyVibratingPose(double t) { return pitchingPose(t, 0.03, 27); }
 
 /// The same near twice the frame rate. Images that follow each other see nearly the same phase of it.
-test::Pose aliasedPose(double t) {
-  test::Pose pose = test::movingPose(t);
-  pose.pitch += 0.03 * test::kDegree * std::sin(2 * M_PI * 42 * t);
-  return pose;
-}
+test::Pose aliasedPose(double t) { return pitchingPose(t, 0.03, 42); }
 
 test::Pose stronglyVibratingPose(double t) {
-  test::Pose pose = test::movingPose(t);
-  pose.pitch += 0.4 * test::kDegree * std::sin(2 * M_PI * 70 * t);
+  test::Pose pose = pitchingPose(t, 0.4, 70);
   pose.roll += 0.4 * test::kDegree * std::sin(2 * M_PI * 50 * t);
   return pose;
 }
@@ -240,11 +233,7 @@ TEST(RollingShutter, OneBadImageDisturbsLittleLongerThanItIsInTheWindow) {
 TEST(RollingShutter, BearsAGyroscopeThatMissesAnImage) {
   constexpr int kPairs = 36, kMissed = 24, kLearned = 12;
   // At twice the frame rate both images shake alike.
-  const auto poseAt = [](double t) {
-    test::Pose pose = test::movingPose(t);
-    pose.pitch += 0.1 * test::kDegree * std::sin(2 * M_PI * 40 * t);
-    return pose;
-  };
+  const auto poseAt = [](double t) { return pitchingPose(t, 0.1, 40); };
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const test::GroundRenderer ground(12);
   Parameters parameters;

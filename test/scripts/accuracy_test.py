@@ -174,16 +174,19 @@ class SensorsTest(unittest.TestCase):
         lines = [cells(line) for line in sensors.render(results).splitlines()]
         self.assertIn(["rolling shutter", "3 m", "50%", "0%", "100.0 (34.2–100.0); 1.00"] + 4 * ["–"], lines)
 
-
     def test_a_flight_is_scored_after_its_first_second_where_it_is_valid(self):
-        estimates = [{"stamp_s": str(stamp), "height_valid": valid, "height_m": str(10 + error), "height_stddev_m": "0.1",
-                      "angle_valid": "0", "approach_angle_deg": "", "approach_angle_stddev_deg": ""}
-                     for stamp, valid, error in ((5, "1", 9), (6, "1", 9), (6.5, "1", 0.1), (7, "1", -0.3), (7.5, "0", 9), (8, "1", 0.2))]
-        truths = [{"stamp_s": row["stamp_s"], "height_m": "10", "approach_angle_deg": "3"} for row in estimates]
-        scores = sensors.score_flight(estimates, truths)
-        self.assertEqual((scores["height"]["valid"], scores["height"]["share"]), (0.75, 1 / 3))
-        self.assertAlmostEqual(scores["height"]["mean"], 2.0)  # per cent
-        self.assertAlmostEqual(scores["height"]["percentile_95"], 2.9)
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder:
+            estimates, truth = Path(folder) / "estimates.csv", Path(folder) / "frames.csv"
+            rows = ((5, 1, 9), (6, 1, 9), (6.5, 1, 0.1), (7, 1, -0.3), (7.5, 0, 9), (8, 1, 0.2))  # stamp, valid, error
+            estimates.write_text(
+                "stamp_s,valid,height_valid,height_m,height_stddev_m,angle_valid,approach_angle_deg,approach_angle_stddev_deg\n"
+                + "".join(f"{stamp},0,{valid},{10 + error},0.1,0,,\n" for stamp, valid, error in rows), encoding="utf-8")
+            truth.write_text("stamp_s,height_m,approach_angle_deg\n" + "".join(f"{stamp},10,3\n" for stamp, _, _ in rows),
+                             encoding="utf-8")
+            scores = sensors.score_flight(estimates, truth)
+        self.assertEqual((scores["height"]["valid"], scores["height"]["within_claimed_95"]), (0.75, 1 / 3))
+        self.assertAlmostEqual(scores["height"]["percent"]["mean"], 2.0)
+        self.assertAlmostEqual(scores["height"]["percent"]["percentile_95"], 2.9)
         self.assertEqual(sensors.flight_row("vibration", "nothing", scores)[2:], ["75.0%", "2.90", "33%", "0.0%"] + 3 * ["–"])
 
 

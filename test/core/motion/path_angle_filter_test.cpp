@@ -63,6 +63,24 @@ Outcome follow(const std::function<double(double)>& angle, double duration, doub
   return outcome;
 }
 
+double gusts(double t) { return (4 + 0.4 * std::sin(2.5 * t) + 0.2 * std::sin(6.1 * t)) * kDegree; }
+
+/// 5 degrees down to 0.5 in three seconds; a chord would be a quarter of a second late, 0.375 degrees.
+double flare(double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; }
+
+/// Flares, while the angle changes.
+Outcome followFlares(const Vibrating& vibrating) {
+  Outcome during;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Outcome one = follow(flare, 7, 4.6, seed, vibrating);
+    during.squares += one.squares;
+    during.squares_over_variance += one.squares_over_variance;
+    during.lag_sum += one.lag_sum;
+    during.count += one.count;
+  }
+  return during;
+}
+
 TEST(PathAngleFilter, IsNearlyAsAccurateAsTheChordOnASteadyGlide) {
   const Outcome glide = follow([](double) { return 5 * kDegree; }, 60, 3, 1);
   // Chord and the mean of ten steps together: 1 / (1 / 0.02^2 + 10 / 0.1^2) = (0.0169 deg)^2.
@@ -87,24 +105,13 @@ TEST(PathAngleFilter, DoesNotAverageAwayWhatAReadoutTimeDoesToAll) {
 }
 
 TEST(PathAngleFilter, DoesNotLagThroughAFlare) {
-  // 5 degrees down to 0.5 in three seconds; a chord would be a quarter of a second late, 0.375 degrees.
-  const auto flare = [](double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; };
-  Outcome during;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Outcome one = follow(flare, 7, 4.6, seed);
-    during.squares += one.squares;
-    during.lag_sum += one.lag_sum;
-    during.count += one.count;
-  }
+  const Outcome during = followFlares({0, false});
   EXPECT_LT(during.rms(), kStepNoise);
   EXPECT_LT(std::abs(during.lag_sum / during.count), 1.5 * kDegree * 0.04)
       << "mean error beyond 0.04 s of lag";
 }
 
 TEST(PathAngleFilter, ClaimsATrueVarianceInGusts) {
-  const auto gusts = [](double t) {
-    return (4 + 0.4 * std::sin(2.5 * t) + 0.2 * std::sin(6.1 * t)) * kDegree;
-  };
   const Outcome outcome = follow(gusts, 120, 3, 7);
   const double mean_square = outcome.squares_over_variance / outcome.count;
   EXPECT_GT(mean_square, 0.6);
@@ -125,9 +132,6 @@ TEST(PathAngleFilter, ClaimsWhatVibrationDoesToARollingShutter) {
 }
 
 TEST(PathAngleFilter, RowsThatDoNotShakeCostLittle) {
-  const auto gusts = [](double t) {
-    return (4 + 0.4 * std::sin(2.5 * t) + 0.2 * std::sin(6.1 * t)) * kDegree;
-  };
   const Outcome rolling = follow(gusts, 120, 3, 7, {0}), global = follow(gusts, 120, 3, 7);
   EXPECT_LT(rolling.rms(), 1.1 * global.rms());
   EXPECT_GT(rolling.squares_over_variance / rolling.count, 0.5);
@@ -135,15 +139,7 @@ TEST(PathAngleFilter, RowsThatDoNotShakeCostLittle) {
 }
 
 TEST(PathAngleFilter, TakesNoFlareForVibration) {
-  const auto flare = [](double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; };
-  Outcome during;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Outcome one = follow(flare, 7, 4.6, seed, {0});
-    during.squares += one.squares;
-    during.squares_over_variance += one.squares_over_variance;
-    during.lag_sum += one.lag_sum;
-    during.count += one.count;
-  }
+  const Outcome during = followFlares({0});
   EXPECT_LT(during.rms(), kStepNoise);
   EXPECT_LT(std::abs(during.lag_sum / during.count), 1.5 * kDegree * 0.04);
   EXPECT_LT(during.squares_over_variance / during.count, 1.5);

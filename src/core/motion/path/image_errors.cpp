@@ -34,19 +34,14 @@ Eigen::MatrixXd ImageErrors::derivatives() const {
   return by_image;
 }
 
-Eigen::MatrixXd ImageErrors::ofSingleImages() const {
-  const Eigen::MatrixXd by_image = derivatives();
-  return by_image * by_image.transpose();
-}
-
-Eigen::MatrixXd ImageErrors::ofSimilarImages() const {
+ImageErrors::Covariances ImageErrors::covariances() const {
   const auto n = static_cast<Eigen::Index>(stamps_.size());
   Eigen::MatrixXd similar(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       similar(i, j) = std::exp(-0.5 * std::pow((stamps_[i] - stamps_[j]) / kSimilar, 2));
   const Eigen::MatrixXd by_image = derivatives();
-  return by_image * similar * by_image.transpose();
+  return {by_image * by_image.transpose(), by_image * similar * by_image.transpose()};
 }
 
 }  // namespace uav_landing

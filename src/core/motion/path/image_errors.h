@@ -12,11 +12,14 @@ class ImageErrors {
  public:
   /// Adds a measurement: the angle of a movement between the images of these stamps, s.
   void add(double from, double to);
-  /// Covariance of the measurements, 1/s^2, when each image has an error of 1 rad s of its own.
-  Eigen::MatrixXd ofSingleImages() const;
-  /// The same when the errors of images that follow each other are similar. Vibration near a multiple of the
-  /// frame rate does that, as all images see it in nearly the same phase.
-  Eigen::MatrixXd ofSimilarImages() const;
+  /// Covariances of the measurements for errors of 1 rad s, 1/s^2.
+  struct Covariances {
+    Eigen::MatrixXd single;  ///< each image has an error of its own
+    /// Images that follow each other have similar errors. Vibration near a multiple of the frame rate does
+    /// that, as all images see it in nearly the same phase.
+    Eigen::MatrixXd similar;
+  };
+  Covariances covariances() const;
 
  private:
   struct Movement {

@@ -131,8 +131,9 @@ class PathAngleFilter::Regression {
     with_last_ = H * unit.col(unit.cols() - 1);
     of_rate_ = H * unit * H.transpose();
     if (rolling) {
-      of_single_images_ = all.images.ofSingleImages().topLeftCorner(rows_, rows_);
-      of_similar_images_ = all.images.ofSimilarImages().topLeftCorner(rows_, rows_);
+      const ImageErrors::Covariances of_images = all.images.covariances();
+      of_single_images_ = of_images.single.topLeftCorner(rows_, rows_);
+      of_similar_images_ = of_images.similar.topLeftCorner(rows_, rows_);
     }
     by_start_ = H.rowwise().sum();
     noise_ += kStartStddev * kStartStddev * by_start_ * by_start_.transpose();
