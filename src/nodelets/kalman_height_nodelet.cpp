@@ -209,6 +209,7 @@ class KalmanHeightNodelet : public StageNodelet {
       estimate.failure = failure;
       estimate.height_valid = estimate.angle_valid = false;
       estimate.forgetPosition();
+      estimate.forgetVelocity();
     }
     note(estimate);
     noteFrames(child, stereo.header.frame_id);

@@ -12,6 +12,7 @@ namespace {
 void refuseHeight(const Failure& failure, LandingResult& body) {
   if (!body.height_valid || !failure) return;
   body.height_valid = false;
+  body.forgetVelocity();
   if (!body.failure) body.failure = failure;
 }
 

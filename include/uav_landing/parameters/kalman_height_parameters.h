@@ -112,8 +112,8 @@ struct KalmanHeightParameters {
              "as frozen, too (test repeated_image); that has no limit to set");
     v.number("recovery_time", recovery_time, 0.0, 60.0, "s",
              "wait after contradictions: when tests took the height away, or failed among the first "
-             "heights, none may fail for this long before the height is valid. 0: it is valid as "
-             "soon as the tests pass");
+             "heights, none may fail for this long before the height is valid. After test velocity "
+             "failed, the velocity waits as long. 0: both are there as soon as the tests pass");
     v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
              "the height is not valid when its protection level exceeds this and alert_limit_relative");
     v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height",

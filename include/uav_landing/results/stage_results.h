@@ -297,10 +297,12 @@ struct LandingResult {
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
-  /// Mean of the last step, in the left camera's frame now, m/s, rad/s. Unknown when no step is believed.
+  /// Mean of the last step, in the left camera's frame now, m/s, rad/s. Unknown when no step is believed. The
+  /// velocity has the height's scale, so it is unknown where the height is not valid.
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Constant(kUnknown);
-  Matrix6d twist_covariance = Matrix6d::Constant(kUnknown);      ///< of both, velocity first
+  Matrix6d twist_covariance = Matrix6d::Constant(kUnknown);  ///< of both, velocity first
+  void forgetVelocity();
   double speed() const { return velocity.norm(); }               ///< along the path, m/s
   double speedVariance() const;                                  ///< m^2/s^2
   double innovation = kUnknown, innovation_variance = kUnknown;  ///< of the raw height

@@ -36,6 +36,12 @@ const char* toString(HeightOrigin origin) {
   return "unknown";
 }
 
+void LandingResult::forgetVelocity() {
+  velocity.setConstant(kUnknown);
+  twist_covariance.topRows<3>().setConstant(kUnknown);
+  twist_covariance.leftCols<3>().setConstant(kUnknown);
+}
+
 double LandingResult::speedVariance() const {
   return velocity.dot(twist_covariance.topLeftCorner<3, 3>() * velocity) / velocity.squaredNorm();
 }

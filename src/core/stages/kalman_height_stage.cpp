@@ -139,7 +139,7 @@ struct KalmanHeightStage::Implementation {
     judgeAngle(in, refusalOf(measured, pair, waiting ? result.failure : jump),
                parameters.max_angle_stddev_deg, result);
     reportDirections(in, ground, pair, result);
-    // The velocity's scale is that of the height. It waits with it.
+    // The velocity's scale is that of the height, which has to be believed again first.
     if (!waiting && motionBelieved(ground, pair))
       reportTwist(believedTwist(in, pair, scaleOfStep(rig, in, ground, result), doubtOfStep(in, ground)),
                   result);
@@ -148,6 +148,7 @@ struct KalmanHeightStage::Implementation {
     reportPosition(in, ground, pair.leftOut() || post.rejection, result);
     timer.reset();
     if (parameters.rig_watch) reportRig(parts->ground.rigRotation(), parameters.max_rig_rotation_deg, result);
+    if (!result.height_valid) result.forgetVelocity();
     if (parameters.integrity_monitor) result.tests = parts->failures.count(tests);
     result.resets = parts->track.resets();
     return result;
@@ -208,11 +209,13 @@ struct KalmanHeightStage::Implementation {
   }
 
   // A step that contradicts the velocity before may belong to another period of a pattern, or to the other
-  // camera. Nobody can tell before three steps have agreed, or in an unusual turn.
+  // camera. Nobody can tell before three steps have agreed, or in an unusual turn. After a contradiction the
+  // aircraft may fly at almost any speed, so steps that agree have to go on for a while.
   bool motionBelieved(const Ground& ground, const PairVerdict& pair) const {
     const TestResult& compared = pair.tests.result(IntegrityTest::kVelocity);
-    const bool agrees = !parameters.integrity_monitor || (compared.possible() && !compared.failed());
-    return agrees && !pair.angle_refused && !ground.tilted;
+    const bool agrees = compared.possible() && !compared.failed() &&
+                        pair.velocity.since_contradiction >= parameters.recovery_time;
+    return (agrees || !parameters.integrity_monitor) && !pair.angle_refused && !ground.tilted;
   }
 
   // Where a pair is refused its stereo is in doubt, and so is what that says of the runway.

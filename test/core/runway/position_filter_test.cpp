@@ -17,6 +17,9 @@ struct Flight {
   int frame = 0;
   double x = -100, y = 3;
   double x_error = 0, x_systematic = 0;  // of x as seen, and what is claimed of it, m
+  double other_runway = 0;               // probability
+  bool checked = true;                   // there is a centre without each of its sources
+  double sources_error = 0;              // of that centre, m
 
   /// x_seen, y_seen: whether the runway is seen. error: of y as seen, m.
   LandingResult next(bool x_seen, bool y_seen, double error = 0) {
@@ -24,6 +27,7 @@ struct Flight {
     y += 0.1;
     ApproachAngleResult approach;
     approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+    approach.other_runway_probability = other_runway;
     approach.step.duration = kPeriod;
     approach.step.rotation.setZero();
     approach.step.translation_over_height = Eigen::Vector3d(-0.1, 0, 2) / kHeight;
@@ -34,7 +38,8 @@ struct Flight {
       approach.runway.y = (y + error) / kHeight;
       approach.runway.width = 30 / kHeight;
       approach.runway.y_variance = approach.runway.width_variance = std::pow(0.1 / kHeight, 2);
-      approach.runway.y_without.without.fill({y / kHeight, std::pow(0.1 / kHeight, 2)});
+      if (checked)
+        approach.runway.y_without.without.fill({(y + sources_error) / kHeight, std::pow(0.1 / kHeight, 2)});
     }
     if (x_seen) {
       approach.runway.threshold_failure = {};
@@ -90,6 +95,7 @@ TEST(PositionFilter, AStepOverTwoPairsOfWhichTheFirstWasGuessedCountsOnce) {
   const auto process = [&](double stamp, double duration, bool seen) {
     ApproachAngleResult approach;
     approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+    approach.other_runway_probability = 0;
     if (duration > 0) {
       approach.step.duration = duration;
       approach.step.rotation.setZero();
@@ -150,6 +156,7 @@ struct Blind {
   void next(bool runway, bool motion, const std::optional<Eigen::Vector3d>& turn, double heading) {
     ApproachAngleResult approach;
     const Eigen::Vector3d along(-std::sin(heading), 0, std::cos(heading));
+    approach.other_runway_probability = 0;
     if (runway) approach.vanishing_direction = along;
     approach.step.failure = {Reason::kNoMotion, ""};
     if (motion) {
@@ -164,12 +171,13 @@ struct Blind {
       approach.runway.y = 0;
       approach.runway.width = 3;
       approach.runway.y_variance = approach.runway.width_variance = 1e-6;
+      approach.runway.y_without.without.fill({0, 1e-6});
     }
     ApproachAngleResult::Motion turned;
     if (turn) turned.rotation = *turn;
     result = {};
     result.stamp = stamp += kPeriod;
-    filter.process(approach, Eigen::Vector3d::UnitY(), turned, {kHeight, 1e-4, kUnknown}, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), turned, {kHeight, 1e-4, 0.2}, result);
   }
 };
 
@@ -206,6 +214,7 @@ TEST(PositionFilter, LeavesOutOneOutlierButBelievesASecondOfThem) {
   for (int i = 0; i < 5; ++i) flight.next(true, true);
   const LandingResult outlier = flight.next(true, true, 4);
   EXPECT_NEAR(outlier.y, flight.y, 0.05);
+  flight.sources_error = 4;
   for (int i = 0; i < 12; ++i) flight.next(true, true, 4);
   const LandingResult believed = flight.next(true, true, 4);
   EXPECT_NEAR(believed.y, flight.y + 4, 0.05);
@@ -232,6 +241,41 @@ TEST(PositionFilter, ItsProtectionLevelCoversWhatTheSourcesContradict) {
   const double seen = level.y_protection_level;
   for (int i = 0; i < 5; ++i) level = agreed.next(false, false);
   EXPECT_GT(level.y_protection_level, seen) << "by the motion alone";
+}
+
+TEST(PositionFilter, IsNotKnownWhereItsSourcesContradictByWhatMatters) {
+  Flight flight;
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(std::isnan(flight.next(false, true, 0.6).y)) << i;
+  Flight off;
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(off.next(false, true, 2.0).y)) << i;
+}
+
+TEST(PositionFilter, EdgesOfWhatMayBeNoRunwayAreNoMeasurement) {
+  Flight flight;
+  flight.other_runway = 0.02;
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(flight.next(true, true).y)) << i;
+  flight.other_runway = 0.005;
+  EXPECT_FALSE(std::isnan(flight.next(true, true).y));
+  // What was known is carried on by the motion.
+  flight.other_runway = 1;
+  const LandingResult carried = flight.next(true, true, 0.5);
+  EXPECT_NEAR(carried.y, flight.y, 1e-9);
+  EXPECT_TRUE(std::isnan(carried.runway_width));
+}
+
+TEST(PositionFilter, WhatNothingChecksIsCarriedNoLongerThanItWasSeenForLessThanASecond) {
+  for (const bool checked : {true, false}) {
+    Flight flight;
+    flight.checked = checked;
+    flight.next(false, false);
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(std::isnan(flight.next(false, true).y)) << i;
+    int carried = 0;
+    while (carried < 10 && !std::isnan(flight.next(false, false).y)) ++carried;
+    EXPECT_NEAR(carried, checked ? 10 : 4, 1);
+    for (int i = 0; i < 8; ++i) EXPECT_FALSE(std::isnan(flight.next(false, true).y)) << "seen again";
+    for (int i = 0; i < 20; ++i) flight.next(false, false);
+    EXPECT_FALSE(std::isnan(flight.next(false, false).y)) << "seen for more than a second";
+  }
 }
 
 TEST(PositionFilter, NoProtectionLevelBeforeTheRunwayIsSeen) {

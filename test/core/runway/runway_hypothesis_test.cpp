@@ -269,6 +269,42 @@ TEST(RunwayHypothesis, AStripWithoutMarksMayBeARoadThatThePathLeadsAlong) {
   EXPECT_GT(margin(true, 4), known + 3);
 }
 
+TEST(RunwayHypothesis, TheMarksOfARoadDoNotOutweighAPathThatLeadsElsewhere) {
+  const auto margin = [](bool bars, double path_deg) {
+    Scene scene;
+    for (const double x : {0, 300, 600}) scene.addStrip({x, 0}, 18, 300);
+    for (const double y : {-8.5, 0.0, 8.5}) scene.addStrip({0, y}, 0.6, 900);
+    for (const double y : {-4.5, -2.5, 2.5, 4.5})
+      if (bars) scene.addStrip({20, y}, 1, 30);
+    const double path = path_deg * kDegree;
+    scene.prior.path = scene.pose.seen({std::cos(path), std::sin(path), -0.05}).normalized();
+    return scene.find()->margin;
+  };
+  const double known = -std::log(kLargestDoubt);
+  EXPECT_GT(margin(false, 6), known);
+  EXPECT_LT(margin(false, 20), known - 4);
+  EXPECT_GT(margin(true, 20), known);
+}
+
+TEST(RunwayHypothesis, AStripThatBeginsBelowTheAircraftCostsEvidence) {
+  const auto evidence = [](double height, double begin, double descent) {
+    Scene scene;
+    scene.pose.position = {-begin, 0, height};
+    scene.addStrip({0, 0}, 45, 3000);
+    scene.prior.height = height;
+    const double without = scene.find()->best.evidence;
+    scene.prior.path = scene.pose.seen({1, 0, -descent}).normalized();
+    return scene.find()->best.evidence - without;
+  };
+  EXPECT_NEAR(evidence(100, 1500, 0.05), 0, 1e-3) << "on an approach";
+  EXPECT_NEAR(evidence(30, 150, 0.05), 0, 1e-2) << "crossed at 14 m by a glide of 6 degrees";
+  EXPECT_NEAR(evidence(200, 3000, 0), 0, 1e-3) << "in level flight before the glide";
+  // At 6 degrees it passes 78.98 m above the near end, 63.98 m more than on an approach.
+  EXPECT_NEAR(evidence(100, 200, 0.05), -0.5 * std::pow(63.98 / 20, 2), 0.1);
+  // A glide of 1 in 5 passes 60 m above it.
+  EXPECT_NEAR(evidence(100, 200, 0.2), -0.5 * std::pow(45.0 / 20, 2), 0.1);
+}
+
 TEST(RunwayHypothesis, OneOfManyStripsSideBySideIsWorthWhatItsShapeIs) {
   // However many marks it has.
   const auto evidence = [](int strips) {

@@ -115,6 +115,20 @@ TEST(KalmanHeightAngle, IsNotValidForAsLongAsAStepAsideIsInItsWindow) {
   EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
 }
 
+TEST(KalmanHeightAngle, GivesNoVelocityForASecondAfterAStepThatContradicts) {
+  Flight flight;
+  LandingResult result;
+  for (int i = 0; i < 40; ++i) result = flight.fly(1, 0.06);
+  ASSERT_NEAR(result.speed(), 20, 0.1);
+  ASSERT_EQ(failedTests(flight.fly(1, 0.06, 2).tests), "velocity");
+  int until = 1;
+  while (std::isnan((result = flight.fly(1, 0.06)).speed()) && until < 40) {
+    EXPECT_TRUE(result.height_valid) << result.failure.message();
+    ++until;
+  }
+  EXPECT_NEAR(until * kT, 1, 1.01 * kT);
+}
+
 TEST(KalmanHeightAngle, GivesNoVelocityWhereNobodyCanTellWhetherTheStepIsRight) {
   Flight flight;
   LandingResult result;

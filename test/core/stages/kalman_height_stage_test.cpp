@@ -172,6 +172,23 @@ TEST(KalmanHeightStage, ReportsTheVelocityInMetresPerSecond) {
   EXPECT_NEAR(result.twist_covariance(0, 0), of_step, 1e-9);
 }
 
+TEST(KalmanHeightStage, HasNoVelocityWhereTheHeightIsNotValid) {
+  for (const double alert_limit : {0.5, 1e-3}) {
+    KalmanHeightParameters parameters;
+    parameters.alert_limit = alert_limit;
+    parameters.alert_limit_relative = 0;
+    KalmanHeightStage stage(usualRig(), parameters);
+    LandingResult result;
+    for (int i = 0; i < 5; ++i)
+      result = stage.process(stereoAt(i * kStep, 10 - 0.2 * i, 0, 0), withStep(angleAt(i * kStep), 0.2));
+    EXPECT_EQ(result.height_valid, alert_limit == 0.5);
+    EXPECT_EQ(result.velocity.allFinite(), result.height_valid);
+    EXPECT_EQ(result.twist_covariance.allFinite(), result.height_valid);
+    EXPECT_TRUE(result.angular_velocity.allFinite()) << "it has no scale";
+    EXPECT_TRUE((result.twist_covariance.bottomRightCorner<3, 3>().allFinite()));
+  }
+}
+
 TEST(KalmanHeightStage, LearnsTheVerticalSpeedFromTheMotion) {
   // Descending by 0.2 m a step: two pairs whose heights are known to 5 cm only.
   const auto speed_after_two = [](bool use_motion) {
@@ -250,6 +267,7 @@ TEST(KalmanHeightStage, KnowsNoPlaceByAHeightThatABentRigMade) {
     LandingResult result;
     for (int i = 0; i < 50; ++i) {
       ApproachAngleResult approach = angleAt(i * kStep);
+      approach.other_runway_probability = 0;
       approach.runway.x = -8;
       approach.runway.y = 0.1;
       approach.runway.width = 4;

@@ -15,6 +15,7 @@ constexpr double kLeastExtent = 0.14;  // least log(far / near) of both edges
 // Evidence of the lines.
 constexpr double kEnoughOfEdges = 14;  // limit, as more lines along the edges do not make it more of a runway
 constexpr double kEnoughMarks = 10;    // limit for marks
+constexpr double kRoadMarks = 4;       // limit for marks that roads have as well, against the path
 constexpr double kAstray = 1.2;        // penalty for each line between the edges that no runway has
 constexpr double kMiddle = 0.08, kSide = 0.15;  // shares of the width for centre line and side stripes
 constexpr double kLane = 0.5;                   // share of the length; a longer line is no mark
@@ -36,6 +37,9 @@ constexpr double kPathSigma = 3 * kDegree;  // 1 sigma between path and runway, 
 // such a strip is a road. That road is as near to the path in direction (6 of 60 degrees) and at the side,
 // and no runway is in view.
 constexpr double kBareStrip = 7.3;
+// An approach crosses the near end at about kCrossing, and may come down as steeply as kGlide.
+constexpr double kCrossing = 15, kCrossingSigma = 20;  // m; a long runway may be landed on beyond its begin
+constexpr double kGlide = 6 * kDegree;
 constexpr double kSteepest = 60 * kDegree;    // angle between path and runway above which nothing is known
 constexpr double kStepSigma = 0.7 * kDegree;  // 1 sigma of the camera's turn between pairs
 constexpr double kSizeSigma = 0.06;           // 1 sigma of the size that is seen, as a share of the size
@@ -90,16 +94,21 @@ double ofShape(const RunwayHypothesis& h, double seen) {
          kSlender * std::min(0.0, std::log(lengths / kUsualLength)) + std::min(extent, kEnoughExtent);
 }
 
-/// Whether a long line runs along the runway between its middle and its sides, where nothing is painted.
-bool isLane(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
+/// Whether a line runs between the middle and the sides. There a runway has bars, and a road has nothing.
+bool isAmongBars(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
   const double across = std::abs((p.places[k]->lateral - h.right) / h.width() - 0.5);  // 0: middle, 0.5: edge
-  const double length = std::log(std::min(p.places[k]->far, h.far) / std::max(p.places[k]->near, h.near));
-  return across > kMiddle && across < 0.5 - kSide && length > kLane * std::log(h.far / h.near);
+  return across > kMiddle && across < 0.5 - kSide;
 }
 
-/// Lines between the edges: evidence of marks, and the number of lines that no runway has.
+/// Whether a line is too long for a bar.
+bool isLong(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
+  const double length = std::log(std::min(p.places[k]->far, h.far) / std::max(p.places[k]->near, h.near));
+  return length > kLane * std::log(h.far / h.near);
+}
+
+/// Lines between the edges: evidence of bars and of other marks, and the number of lines that no runway has.
 struct Surface {
-  double marks = 0;
+  double bars = 0, others = 0;
   int astray = 0;
 };
 
@@ -115,10 +124,12 @@ Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, R
       found.astray += lines.isAcross(static_cast<int>(k)) ? 0 : 1;
     } else if (h.members[k] == 0) {
       h.members[k] = 1;
-      if (isLane(p, k, h))
+      if (!isAmongBars(p, k, h))
+        found.others += p.evidence[k];
+      else if (isLong(p, k, h))
         ++found.astray;
       else
-        found.marks += p.evidence[k];
+        found.bars += p.evidence[k];
     }
   }
   return found;
@@ -167,9 +178,9 @@ std::optional<RunwayHypothesis> runwayBetween(const GroundLines& lines, const Li
     for (const size_t k : edge->pieces) h.members[k] = 1;
   const Surface surface = surfaceOf(lines, p, slack, h);
   const double row = ofRow(p, slack, h);
-  h.marks = std::min(surface.marks, kEnoughMarks);
-  const double pointing = std::min(left_edge.evidence + right_edge.evidence, kEnoughOfEdges) + h.marks;
-  h.marks = std::max(0.0, h.marks - row);
+  const double marks = std::min(surface.bars + surface.others, kEnoughMarks);
+  const double pointing = std::min(left_edge.evidence + right_edge.evidence, kEnoughOfEdges) + marks;
+  h.marks = std::max(0.0, std::min(surface.bars + std::min(surface.others, kRoadMarks), kEnoughMarks) - row);
   h.evidence = std::max(0.0, pointing - row) - kAstray * surface.astray +
                ofShape(h, std::min(seenLength(p, left_edge, h), seenLength(p, right_edge, h)));
   return h;
@@ -184,12 +195,22 @@ double againstHorizon(const Eigen::Vector3d& direction, const RunwayPrior& prior
   return penalty(prior.normal.dot(direction), direction.dot(prior.normal_covariance * direction), kMostOff);
 }
 
+/// Height of the path over the near end beyond that of an approach, over its 1 sigma. A road below the
+/// aircraft begins too near for it to land there.
+double tooHigh(const RunwayHypothesis& h, const RunwayPrior& prior) {
+  if (!prior.height) return 0;
+  const double down = std::max(std::asin(std::min(prior.normal.dot(*prior.path), 1.0)), kGlide);
+  return std::max(0.0, *prior.height * (1 - h.near * std::tan(down)) - kCrossing) / kCrossingSigma;
+}
+
 double againstPath(const RunwayHypothesis& h, const RunwayPrior& prior) {
   if (!prior.path) return 0;
   const double aside = azimuthOn(prior.normal, *prior.path) - azimuthOn(prior.normal, h.direction);
   const double passes = h.near * std::tan(std::clamp(aside, -kSteepest, kSteepest));  // left of the camera
   const double beside = std::atan(std::max({0.0, passes - h.left, h.right - passes}) / h.near);
-  return std::min(kMostOff, 0.5 * (aside * aside + beside * beside) / (kPathSigma * kPathSigma));
+  const double above = tooHigh(h, prior);
+  return std::min(kMostOff,
+                  0.5 * ((aside * aside + beside * beside) / (kPathSigma * kPathSigma) + above * above));
 }
 
 double mostOfMargin(const RunwayHypothesis& h, const RunwayPrior& prior) {

@@ -17,10 +17,11 @@ std::optional<RunwayHypothesis> runwayBetween(const GroundLines& lines, const Li
 
 /// Penalty for a direction that is not on the ground's horizon.
 double againstHorizon(const Eigen::Vector3d& direction, const RunwayPrior& prior);
-/// Penalty for an object that the flight path does not lead along, or passes at the side.
+/// Penalty for an object that the flight path does not lead along, passes at the side, or is far above where
+/// it begins.
 double againstPath(const RunwayHypothesis& object, const RunwayPrior& prior);
 /// Largest margin that an object may have. A road or a canal may lead along the flight path as well, but it
-/// has no marks. Infinite while no path is known.
+/// has no bars. Infinite while no path is known.
 double mostOfMargin(const RunwayHypothesis& object, const RunwayPrior& prior);
 /// Penalty for a direction that differs from the previous pair's one. It is limited by the chance that the
 /// previous one was wrong.

@@ -34,7 +34,7 @@ struct RunwayChoice {
 /// - Many more lines beside it have the same direction, as streets and crop rows come in rows.
 /// - It is longer than the chart says, or of another width.
 /// - Its direction is off the horizon, or far from the flight path or from the previous pair's direction.
-/// - The flight path passes it at the side.
+/// - The flight path passes it at the side, or is far above where it begins.
 ///
 /// The penalties for direction, path and size are limited, so that enough evidence of lines outweighs what
 /// was known before.

@@ -22,7 +22,7 @@ struct RunwayHypothesis {
   double left = 0, right = 0;  ///< lateral places of the edges, in heights of the camera, left positive
   double near = 0, far = 0;    ///< ends of the part where both are seen, forward, in heights
   double evidence = 0;         ///< log-likelihood ratio to a pair of lines that is there by chance
-  double marks = 0;            ///< part of it from lines along the runway between the edges
+  double marks = 0;            ///< part of it from marks between the edges, little for those that roads have
   double lead = 0;             ///< evidence, less the penalty for a turn since the previous pair
   /// Per line: 1 for the edges, and for lines along the runway between them.
   std::vector<char> members;
