@@ -492,6 +492,7 @@ TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {
   EXPECT_FALSE(estimate.valid);
   EXPECT_FALSE(estimate.height_valid);
   EXPECT_EQ(estimate.reason, "transform_missing: no static transform between imu_link and left_optical");
+  EXPECT_TRUE(std::isnan(estimate.velocity[2])) << "as the height is not valid";
   EXPECT_TRUE(transforms_.messages().empty());
   publishLeverArm("imu_link", "left_optical");
   double t = 0.4;
@@ -500,6 +501,7 @@ TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {
     return waitFor(t) && estimateOf(t).valid;
   }));
   EXPECT_EQ(estimateOf(t).child_frame_id, "imu_link");
+  EXPECT_NEAR(estimateOf(t).velocity[2], std::cos(scene_.pitch), 0.01);
 }
 
 TEST_F(KalmanHeightNodeletTest, DiagnosticsSayWhyWhatIsPublishedIsNotValid) {

@@ -159,9 +159,12 @@ TEST_F(ReferToTest, APointThatSwingsTooFarHasNoValidHeight) {
   camera_.pitch_variance = 4e-4;
   camera_.height_protection_level = 0.5;
   camera_.height_alert_limit = 10;
+  camera_.velocity = {0, 0, 20};
   EXPECT_TRUE(refer({0, 0, -5}).height_valid) << "3 sigma 0.4 m of 0.6 m";
+  EXPECT_EQ(refer({0, 0, -5}).velocity, camera_.velocity);
   const LandingResult body = refer({0, 0, -30});
   EXPECT_FALSE(body.height_valid);
+  EXPECT_TRUE(body.velocity.array().isNaN().all());
   EXPECT_EQ(body.failure.reason, Reason::kUncertain);
   EXPECT_NE(body.failure.message().find("3 sigma of"), std::string::npos) << body.failure.message();
 }

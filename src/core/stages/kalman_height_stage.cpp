@@ -140,9 +140,13 @@ struct KalmanHeightStage::Implementation {
                parameters.max_angle_stddev_deg, result);
     reportDirections(in, ground, pair, result);
     // The velocity's scale is that of the height, which has to be believed again first.
-    if (!waiting && motionBelieved(ground, pair))
+    if (!waiting && motionBelieved(ground, pair)) {
       reportTwist(believedTwist(in, pair, scaleOfStep(rig, in, ground, result), doubtOfStep(in, ground)),
                   result);
+      // After a contradiction the aircraft may fly at almost any speed, so some steps have to agree first.
+      if (parameters.integrity_monitor && pair.velocity.agreed < parameters.recovery_time)
+        result.forgetVelocity();
+    }
     result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");
     reportPosition(in, ground, pair.leftOut() || post.rejection, result);
@@ -209,13 +213,11 @@ struct KalmanHeightStage::Implementation {
   }
 
   // A step that contradicts the velocity before may belong to another period of a pattern, or to the other
-  // camera. Nobody can tell before three steps have agreed, or in an unusual turn. After a contradiction the
-  // aircraft may fly at almost any speed, so steps that agree have to go on for a while.
+  // camera. Nobody can tell before three steps have agreed, or in an unusual turn.
   bool motionBelieved(const Ground& ground, const PairVerdict& pair) const {
     const TestResult& compared = pair.tests.result(IntegrityTest::kVelocity);
-    const bool agrees = compared.possible() && !compared.failed() &&
-                        pair.velocity.since_contradiction >= parameters.recovery_time;
-    return (agrees || !parameters.integrity_monitor) && !pair.angle_refused && !ground.tilted;
+    const bool agrees = !parameters.integrity_monitor || (compared.possible() && !compared.failed());
+    return agrees && !pair.angle_refused && !ground.tilted;
   }
 
   // Where a pair is refused its stereo is in doubt, and so is what that says of the runway.

@@ -18,15 +18,17 @@ struct Flight {
   double x = -100, y = 3;
   double x_error = 0, x_systematic = 0;  // of x as seen, and what is claimed of it, m
   double other_runway = 0;               // probability
-  bool checked = true;                   // there is a centre without each of its sources
-  double sources_error = 0;              // of that centre, m
+  double heading = 0;                    // of the direction that is seen, right of the runway's, rad
+  double width = 30;                     // m
+  int sources = kCentreSources;          // that the centre is also seen without
+  double sources_error = 0, sources_stddev = 0.1;  // of that centre, m
 
   /// x_seen, y_seen: whether the runway is seen. error: of y as seen, m.
   LandingResult next(bool x_seen, bool y_seen, double error = 0) {
     x += 2;
     y += 0.1;
     ApproachAngleResult approach;
-    approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+    approach.vanishing_direction = {std::sin(heading), 0, std::cos(heading)};
     approach.other_runway_probability = other_runway;
     approach.step.duration = kPeriod;
     approach.step.rotation.setZero();
@@ -36,10 +38,11 @@ struct Flight {
     if (y_seen) {
       approach.runway.failure = {};
       approach.runway.y = (y + error) / kHeight;
-      approach.runway.width = 30 / kHeight;
+      approach.runway.width = width / kHeight;
       approach.runway.y_variance = approach.runway.width_variance = std::pow(0.1 / kHeight, 2);
-      if (checked)
-        approach.runway.y_without.without.fill({(y + sources_error) / kHeight, std::pow(0.1 / kHeight, 2)});
+      for (int i = 0; i < sources; ++i)
+        approach.runway.y_without.without[i] = {(y + sources_error) / kHeight,
+                                                std::pow(sources_stddev / kHeight, 2)};
     }
     if (x_seen) {
       approach.runway.threshold_failure = {};
@@ -244,29 +247,55 @@ TEST(PositionFilter, ItsProtectionLevelCoversWhatTheSourcesContradict) {
 }
 
 TEST(PositionFilter, IsNotKnownWhereItsSourcesContradictByWhatMatters) {
-  Flight flight;
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(std::isnan(flight.next(false, true, 0.6).y)) << i;
-  Flight off;
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(off.next(false, true, 2.0).y)) << i;
+  const auto known = [](double off, double width, double sources_stddev) {
+    Flight flight;
+    flight.width = width;
+    flight.sources_error = off;
+    flight.sources_stddev = sources_stddev;
+    for (int i = 0; i < 4; ++i) flight.next(false, true);
+    return !std::isnan(flight.next(false, true).y);
+  };
+  EXPECT_TRUE(known(1.4, 30, 0.1));
+  EXPECT_FALSE(known(1.6, 30, 0.1)) << "1.5 m matter";
+  EXPECT_TRUE(known(1.6, 60, 0.1));
+  EXPECT_FALSE(known(1.9, 60, 0.1)) << "3 % of 60 m";
+  EXPECT_TRUE(known(1.9, 60, 1)) << "less than 5 sigma";
 }
 
-TEST(PositionFilter, EdgesOfWhatMayBeNoRunwayAreNoMeasurement) {
+TEST(PositionFilter, AContradictionLastsUntilAMeasurementAgrees) {
   Flight flight;
+  flight.sources_error = 3;
+  for (int i = 0; i < 15; ++i) flight.next(false, true);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(std::isnan(flight.next(false, false).y)) << i;
+  flight.sources_error = 0;
+  int until = 0;
+  while (until < 30 && std::isnan(flight.next(false, true).y)) ++until;
+  EXPECT_LT(until, 15) << "outliers are believed after a second";
+}
+
+TEST(PositionFilter, OneSourceIsEnoughToContradict) {
+  Flight flight;
+  flight.sources_error = 3;
+  flight.sources = 1;
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(flight.next(false, true).y)) << i;
+}
+
+TEST(PositionFilter, ADirectionThatMayBeARoadsDoesNotSteerIt) {
+  Flight flight;
+  for (int i = 0; i < 3; ++i) flight.next(true, true);
+  flight.heading = 0.1;
   flight.other_runway = 0.02;
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(flight.next(true, true).y)) << i;
-  flight.other_runway = 0.005;
-  EXPECT_FALSE(std::isnan(flight.next(true, true).y));
-  // What was known is carried on by the motion.
-  flight.other_runway = 1;
-  const LandingResult carried = flight.next(true, true, 0.5);
-  EXPECT_NEAR(carried.y, flight.y, 1e-9);
-  EXPECT_TRUE(std::isnan(carried.runway_width));
+  for (int i = 0; i < 10; ++i) {
+    const LandingResult result = flight.next(false, false);
+    EXPECT_NEAR(result.y, flight.y, 0.05) << "0.2 m a step along the road";
+    EXPECT_NEAR(result.x, flight.x, 0.05);
+  }
 }
 
 TEST(PositionFilter, WhatNothingChecksIsCarriedNoLongerThanItWasSeenForLessThanASecond) {
   for (const bool checked : {true, false}) {
     Flight flight;
-    flight.checked = checked;
+    if (!checked) flight.sources = 0;
     flight.next(false, false);
     for (int i = 0; i < 4; ++i) EXPECT_FALSE(std::isnan(flight.next(false, true).y)) << i;
     int carried = 0;

@@ -270,20 +270,25 @@ TEST(RunwayHypothesis, AStripWithoutMarksMayBeARoadThatThePathLeadsAlong) {
 }
 
 TEST(RunwayHypothesis, TheMarksOfARoadDoNotOutweighAPathThatLeadsElsewhere) {
-  const auto margin = [](bool bars, double path_deg) {
+  enum class Marks { kLanes, kBars };
+  const auto margin = [](Marks marks, double path_deg) {
     Scene scene;
     for (const double x : {0, 300, 600}) scene.addStrip({x, 0}, 18, 300);
     for (const double y : {-8.5, 0.0, 8.5}) scene.addStrip({0, y}, 0.6, 900);
-    for (const double y : {-4.5, -2.5, 2.5, 4.5})
-      if (bars) scene.addStrip({20, y}, 1, 30);
+    if (marks == Marks::kLanes) {
+      for (const double x : {20, 120, 220})
+        for (const double y : {-4.5, 4.5}) scene.add({x, y}, {x + 6, y}, Brighter::kLeft);
+    } else {
+      for (const double y : {-4.5, -2.5, 2.5, 4.5}) scene.addStrip({20, y}, 1, 30);
+    }
     const double path = path_deg * kDegree;
     scene.prior.path = scene.pose.seen({std::cos(path), std::sin(path), -0.05}).normalized();
     return scene.find()->margin;
   };
   const double known = -std::log(kLargestDoubt);
-  EXPECT_GT(margin(false, 6), known);
-  EXPECT_LT(margin(false, 20), known - 4);
-  EXPECT_GT(margin(true, 20), known);
+  EXPECT_GT(margin(Marks::kLanes, 6), known);
+  EXPECT_LT(margin(Marks::kLanes, 20), known - 4);
+  EXPECT_GT(margin(Marks::kBars, 20), known);
 }
 
 TEST(RunwayHypothesis, AStripThatBeginsBelowTheAircraftCostsEvidence) {

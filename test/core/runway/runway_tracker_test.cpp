@@ -26,6 +26,7 @@ struct Approach {
   int frame = 0;
   bool third_line = false;       ///< the other edge line of a runway whose left half the two lines are
   double time = 0, climbed = 0;  // s, m
+  double other_runway = 0;       // probability
   std::optional<Pose> last;
 
   /// known_width: m, or 0.
@@ -61,6 +62,7 @@ struct Approach {
     if (third_line) addThirdLine(now, direction);
     ApproachAngleResult approach;
     approach.stamp = time += 0.05;
+    approach.other_runway_probability = other_runway;
     approach.left = direction.left;
     approach.right = direction.right;
     approach.n = n;
@@ -106,6 +108,20 @@ TEST(RunwayTracker, TellsThePositionAfterThreePairsThatAgree) {
     EXPECT_LT(std::abs(without - runway.y), 3 * std::sqrt(variance)) << "two lines show their direction";
     EXPECT_TRUE(std::isnan(runway.y_without[CentreSource::kLeftEdge].value)) << "and nothing checks them";
   }
+}
+
+TEST(RunwayTracker, EdgesOfWhatMayBeNoRunwayTellNoPlace) {
+  Approach approach;
+  for (int i = 0; i < 5; ++i) approach.next();
+  approach.other_runway = 0.02;
+  const auto doubted = approach.next();
+  EXPECT_EQ(doubted.failure.reason, Reason::kNoRunway);
+  EXPECT_NE(doubted.failure.detail.find("probability of 0.02, at most 0.01"), std::string::npos)
+      << doubted.failure.detail;
+  EXPECT_TRUE(doubted.threshold_failure);
+  EXPECT_TRUE(std::isnan(doubted.y) && std::isnan(doubted.x) && std::isnan(doubted.width));
+  approach.other_runway = 0.005;
+  EXPECT_FALSE(approach.next().failure) << "it was followed all the same";
 }
 
 TEST(RunwayTracker, EdgesOfAnotherWidthThanTheKnownOneAreTakenAsIfNoneWereKnown) {

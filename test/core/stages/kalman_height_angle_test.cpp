@@ -124,6 +124,7 @@ TEST(KalmanHeightAngle, GivesNoVelocityForASecondAfterAStepThatContradicts) {
   int until = 1;
   while (std::isnan((result = flight.fly(1, 0.06)).speed()) && until < 40) {
     EXPECT_TRUE(result.height_valid) << result.failure.message();
+    EXPECT_TRUE(result.angular_velocity.allFinite());
     ++until;
   }
   EXPECT_NEAR(until * kT, 1, 1.01 * kT);

@@ -43,7 +43,7 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
       return restart(step);
     ++agreements_;
   } else if (!agrees) {
-    since_contradiction_ = 0;
+    since_contradiction_ = agreed_ = 0;
     contradicted_ += step.duration;
     // The rotation of this step is not believed, either.
     velocity_ = velocity_before_;
@@ -52,6 +52,7 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
   }
   covariance_ += lasting();
   contradicted_ = 0;
+  agreed_ += step.duration;
   const Eigen::Matrix3d gain = covariance_ * (covariance_ + measured.covariance).inverse();
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain;
   velocity_ += gain * difference;

@@ -33,6 +33,8 @@ class VelocityMemory {
   void skip(double duration);
   /// Time since the last step that did not agree, s.
   double sinceContradiction() const { return since_contradiction_; }
+  /// Duration of the steps that have agreed since then, s.
+  double agreed() const { return agreed_; }
 
  private:
   void restart(const Step& step);
@@ -47,6 +49,7 @@ class VelocityMemory {
   int agreements_ = 0;       // steps in a row that agreed, up to three
   double contradicted_ = 0;  // s since the last step that agreed; 0 when the last one did
   double since_contradiction_ = std::numeric_limits<double>::infinity();
+  double agreed_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace uav_landing

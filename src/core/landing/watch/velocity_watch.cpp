@@ -34,8 +34,8 @@ VelocityWatch::Verdict VelocityWatch::follow(const PairInput& in, double height,
 
 VelocityWatch::Verdict VelocityWatch::verdict() const {
   Verdict result;
-  result.since_contradiction = velocity_.sinceContradiction();
-  if (result.since_contradiction < window_) result.path_doubt = doubt_;
+  result.agreed = velocity_.agreed();
+  if (velocity_.sinceContradiction() < window_) result.path_doubt = doubt_;
   return result;
 }
 

@@ -20,7 +20,7 @@ class VelocityWatch {
     /// Possible error of the approach angle because of steps that contradicted, rad. path_doubt holds as long
     /// as such a step is in the sliding window; step_doubt belongs to this step.
     double path_doubt = 0, step_doubt = 0;
-    double since_contradiction = std::numeric_limits<double>::infinity();  ///< s
+    double agreed = std::numeric_limits<double>::infinity();  ///< s of steps since one that contradicted
   };
   /// Tests the step of a pair. Do not call it for a repeated image, because the next step covers the time of
   /// both. height: m. duration_variance: of durations between stamps, divided by their squares.

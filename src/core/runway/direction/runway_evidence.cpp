@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace uav_landing {
 namespace {
@@ -16,7 +18,9 @@ constexpr double kLeastExtent = 0.14;  // least log(far / near) of both edges
 constexpr double kEnoughOfEdges = 14;  // limit, as more lines along the edges do not make it more of a runway
 constexpr double kEnoughMarks = 10;    // limit for marks
 constexpr double kRoadMarks = 4;       // limit for marks that roads have as well, against the path
-constexpr double kAstray = 1.2;        // penalty for each line between the edges that no runway has
+// Least number of sides of bars. An aiming point has four, and the lanes of a road have fewer.
+constexpr size_t kFewestBars = 4;
+constexpr double kAstray = 1.2;                 // penalty for each line between the edges that no runway has
 constexpr double kMiddle = 0.08, kSide = 0.15;  // shares of the width for centre line and side stripes
 constexpr double kLane = 0.5;                   // share of the length; a longer line is no mark
 constexpr double kSameEnd = 0.03;    // share of the distance; lines this close to an end count as at it
@@ -33,7 +37,7 @@ constexpr double kTelling = 1;  // least evidence of a line that counts as besid
 constexpr double kMostOff = 10;             // largest penalty for ground, path, or chart
 constexpr double kMostTurned = 6;           // largest penalty for a turn since the previous pair
 constexpr double kPathSigma = 3 * kDegree;  // 1 sigma between path and runway, from wind and corrections
-// Largest margin of a strip without marks that the path leads along. In about one of a thousand approaches
+// Largest margin of a strip without bars that the path leads along. In about one of a thousand approaches
 // such a strip is a road. That road is as near to the path in direction (6 of 60 degrees) and at the side,
 // and no runway is in view.
 constexpr double kBareStrip = 7.3;
@@ -94,7 +98,7 @@ double ofShape(const RunwayHypothesis& h, double seen) {
          kSlender * std::min(0.0, std::log(lengths / kUsualLength)) + std::min(extent, kEnoughExtent);
 }
 
-/// Whether a line runs between the middle and the sides. There a runway has bars, and a road has nothing.
+/// Whether a line runs between the middle and the sides, where a runway has bars.
 bool isAmongBars(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
   const double across = std::abs((p.places[k]->lateral - h.right) / h.width() - 0.5);  // 0: middle, 0.5: edge
   return across > kMiddle && across < 0.5 - kSide;
@@ -112,9 +116,17 @@ struct Surface {
   int astray = 0;
 };
 
+/// Number of places that are not the same.
+size_t countApart(std::vector<double> places, double slack) {
+  std::sort(places.begin(), places.end());
+  const auto same = [slack](double a, double b) { return b - a < slack; };
+  return static_cast<size_t>(std::unique(places.begin(), places.end(), same) - places.begin());
+}
+
 /// Evaluates the lines between the edges, and adds those along the runway to the members.
 Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, RunwayHypothesis& h) {
   Surface found;
+  std::vector<double> bars;
   for (size_t k = 0; k < p.passes.size(); ++k) {
     if (!p.places[k] || p.places[k]->lateral > h.left + slack || p.places[k]->lateral < h.right - slack)
       continue;
@@ -124,14 +136,17 @@ Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, R
       found.astray += lines.isAcross(static_cast<int>(k)) ? 0 : 1;
     } else if (h.members[k] == 0) {
       h.members[k] = 1;
-      if (!isAmongBars(p, k, h))
+      if (!isAmongBars(p, k, h)) {
         found.others += p.evidence[k];
-      else if (isLong(p, k, h))
+      } else if (isLong(p, k, h)) {
         ++found.astray;
-      else
+      } else {
         found.bars += p.evidence[k];
+        bars.push_back(p.places[k]->lateral);
+      }
     }
   }
+  if (countApart(bars, slack) < kFewestBars) found.others += std::exchange(found.bars, 0);
   return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/text.h"
 #include "runway/direction/line_pencil.h"
@@ -74,13 +75,19 @@ Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& segm
     return tl::make_unexpected(Failure{
         Reason::kNoRunway, text("no two of ", segments.size(), " lines may be the edges of a runway")});
   const auto azimuth = [&](const RunwayHypothesis& h) { return azimuthOn(prior.normal, h.direction); };
+  const auto isOther = [&](const RunwayHypothesis& h) {
+    return std::abs(azimuth(h) - azimuth(*best)) > kOther;
+  };
   double evidence = kByChance, lead = kByChance;
   for (const RunwayHypothesis& h : found) {
-    if (std::abs(azimuth(h) - azimuth(*best)) <= kOther) continue;
+    if (!isOther(h)) continue;
     evidence = std::max(evidence, h.evidence);
     lead = std::max(lead, h.lead);
   }
-  const double margin = std::min(best->evidence - evidence, mostOfMargin(*best, prior));
+  // The margin is that of the direction. Half of a runway has the same one, and may lead with fewer bars.
+  double margin = -std::numeric_limits<double>::infinity();
+  for (const RunwayHypothesis& h : found)
+    if (!isOther(h)) margin = std::max(margin, std::min(h.evidence - evidence, mostOfMargin(h, prior)));
   return RunwayChoice{*best, margin, best->lead - lead};
 }
 

@@ -10,9 +10,10 @@
 
 namespace uav_landing {
 
-/// The hypothesis with the largest lead. margin, lead: by how much its evidence and its lead exceed those of
-/// any other direction, and of two lines that meet by chance. The margin comes from this pair alone, so
-/// margins of several pairs may be averaged. It is limited for an object without marks (mostOfMargin()).
+/// The hypothesis with the largest lead. lead: by how much that exceeds the lead of any other direction, and
+/// of two lines that meet by chance. margin: by how much the evidence for this direction exceeds that for any
+/// other. It comes from this pair alone, so margins of several pairs may be averaged. Where the path is known
+/// it is limited, the less the more bars are seen (mostOfMargin()).
 struct RunwayChoice {
   RunwayHypothesis best;
   double margin, lead;

@@ -14,6 +14,8 @@ constexpr double kNarrowestRunway = 0.4, kWidestRunway = 90;
 
 /// Largest accepted chance that a reported direction belongs to something else.
 constexpr double kLargestDoubt = 1e-3;
+/// The same where edges along the direction tell a place. They have to agree over some pairs besides.
+constexpr double kLargestDoubtOfEdges = 0.01;
 
 /// Two edges side by side on the ground that may be a runway's, with what lies between them.
 struct RunwayHypothesis {

@@ -22,27 +22,29 @@ void PositionAxis::predict(double movement, double stddev) {
   covariance_(0, 0) = by_offset + std::pow(std::sqrt(own) + stddev, 2);
 }
 
-void PositionAxis::update(double value, double variance, double systematic, double seconds) {
+bool PositionAxis::update(double value, double variance, double systematic, double seconds) {
   const Eigen::RowVector2d h(1, std::sqrt(systematic));
   const double innovation = value - h * state_, random = variance - systematic;
   const double predicted = h * covariance_ * h.transpose();
   if (known_ && !kGate.admits(innovation, predicted + common_ + random)) {
     rejected_ += seconds;
-    if (rejected_ < kRestart) return;
-    known_ = false;
+    if (rejected_ < kRestart) return false;
+    *this = PositionAxis();
   }
   rejected_ = 0;
+  measured_ += seconds;
   common_ = kCommon * random;
   const double own = random - common_;
   if (!known_) {
     known_ = true;
     state_ << value, 0;
     covariance_ << own + systematic, -h(1), -h(1), 1;
-    return;
+    return true;
   }
   const Eigen::Vector2d gain = covariance_ * h.transpose() / (predicted + own);
   state_ += gain * innovation;
   covariance_ -= gain * (predicted + own) * gain.transpose();
+  return true;
 }
 
 void PositionAxis::forgetAbove(double stddev) {

@@ -14,13 +14,15 @@ class PositionAxis {
  public:
   void predict(double movement, double stddev);
   /// value: measured position, m. variance: m^2. systematic: part of the variance that is the same error in
-  /// all measurements.
-  void update(double value, double variance, double systematic, double seconds);
+  /// all measurements. seconds: since the pair before. Returns whether the measurement is accepted.
+  bool update(double value, double variance, double systematic, double seconds);
   void forgetAbove(double stddev);
 
   bool known() const { return known_; }
   double value() const { return state_(0); }
   double variance() const { return covariance_(0, 0) + common_; }
+  /// Time with accepted measurements since it is known, s.
+  double measured() const { return measured_; }
 
  private:
   bool known_ = false;
@@ -28,6 +30,7 @@ class PositionAxis {
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
   double common_ = 0;    // part of the last measurement's variance that does not average out
   double rejected_ = 0;  // s of rejected measurements in a row
+  double measured_ = 0;
 };
 
 }  // namespace uav_landing

@@ -7,6 +7,7 @@
 #include "estimation/aircraft.h"
 #include "geometry/rotation.h"
 #include "height/attitude_filter.h"
+#include "runway/direction/runway_object.h"
 
 namespace uav_landing {
 namespace {
@@ -17,13 +18,8 @@ constexpr double kAcrossError = 0.005;
 constexpr double kBlindError = 0.2;  // share of the distance flown, 1 sigma, while the motion is not measured
 constexpr double kWorthlessX = 0.5;  // 1 sigma as a share of the runway's width
 constexpr double kWorthlessY = 0.1;  // 1 sigma as a share of the runway's width
-// Sources that contradict each other make the protection level of y larger than its own uncertainty does, in
-// standard deviations, and larger than an error that matters, m, and as a share of the runway's width.
-constexpr double kAgreed = 10, kMattersY = 1.5, kMattersYShare = 0.03;
-constexpr double kLongSeen = 1;  // s
-// Largest probability that edges along a direction are not the runway's. They agree over some pairs, so it
-// may be larger than that of a yaw.
-constexpr double kDoubtOfEdges = 0.01;
+constexpr double kMattersY = 1.5, kMattersYShare = 0.03;  // errors of y that matter: m, share of the width
+constexpr double kLongMeasured = 1;                       // s
 
 }  // namespace
 
@@ -35,23 +31,26 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
   const double h = height.value;
   const double seconds = last_stamp_ ? result.stamp - *last_stamp_ : 0;
   last_stamp_ = result.stamp;
-  followDirection(approach.vanishing_direction, turn, seconds);
+  const bool is_runway = approach.other_runway_probability <= kLargestDoubtOfEdges;
+  followDirection(is_runway ? approach.vanishing_direction : Eigen::Vector3d::Constant(kUnknown), turn,
+                  seconds);
   move(approach, normal, h, seconds);
   const ApproachAngleResult::Runway& seen = approach.runway;
   const auto metric = [&](double ratio, double variance) {
     return variance * h * h + ratio * ratio * height.variance;
   };
-  const bool is_runway = approach.other_runway_probability <= kDoubtOfEdges;
-  y_unseen_ += seconds;
-  if (std::isfinite(h) && is_runway && !seen.failure && seen.y_variance > 0) {
+  y_carried_ += seconds;
+  if (std::isfinite(h) && !seen.failure && seen.y_variance > 0) {
     if (std::isfinite(seen.width)) {
       result.runway_width = width_ = seen.width * h;
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
-    y_.update(seen.y * h, metric(seen.y, seen.y_variance), 0, seconds);
+    const bool accepted = y_.update(seen.y * h, metric(seen.y, seen.y_variance), 0, seconds);
     separation_.update(seen.y_without, height, seconds);
-    y_seen_ += seconds;
-    y_unseen_ = 0;
+    if (accepted) {
+      y_carried_ = 0;
+      y_contradicted_ = separation_.contradicts(y_.value(), std::max(kMattersY, kMattersYShare * width_));
+    }
     if (!seen.threshold_failure && seen.x_variance > 0)
       x_.update(seen.x * h, metric(seen.x, seen.x_variance), seen.x_systematic_variance * h * h, seconds);
   }
@@ -62,22 +61,14 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
     result.x = x_.value();
     result.x_variance = x_.variance();
   }
-  if (!y_.known()) {
-    y_seen_ = 0;
-    return;
-  }
+  if (!y_.known() || y_contradicted_) return;
   const double level = separation_.protectionLevel(y_.value(), y_.variance());
-  if (!isBelieved(level)) return;
+  // Edges that nothing checks are not carried on for longer than they were measured, unless that was long.
+  const bool lasting = y_carried_ <= y_.measured() || y_.measured() >= kLongMeasured;
+  if (!std::isfinite(level) && !lasting) return;
   result.y = y_.value();
   result.y_variance = y_.variance();
   result.y_protection_level = level;
-}
-
-bool PositionFilter::isBelieved(double protection_level) const {
-  // Edges that nothing checks are not carried on for longer than they were seen, unless that was long.
-  if (!std::isfinite(protection_level)) return y_unseen_ <= y_seen_ || y_seen_ >= kLongSeen;
-  return protection_level <=
-         std::max({kMattersY, kMattersYShare * width_, kAgreed * std::sqrt(y_.variance())});
 }
 
 void PositionFilter::followDirection(const Eigen::Vector3d& seen, const ApproachAngleResult::Motion& turn,

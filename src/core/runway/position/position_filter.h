@@ -12,8 +12,8 @@ namespace uav_landing {
 
 /// Position over the runway in metres. Measurements are smoothed over time. Between them the motion is summed
 /// up while the variance grows. x and y are filtered separately. Each is known from its first measurement
-/// until it is too uncertain to be useful. y has a protection level, and is not known where its sources
-/// contradict each other by what matters. Edges of what may be no runway are not measurements.
+/// until it is too uncertain to be useful. y has a protection level. While the sources of its last
+/// measurement contradict each other by what matters, y is not known.
 class PositionFilter {
  public:
   explicit PositionFilter(const KalmanHeightParameters& parameters);
@@ -34,7 +34,6 @@ class PositionFilter {
   void move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
             double seconds);
   void moveAcross(double movement, double stddev);
-  bool isBelieved(double protection_level) const;
 
   PositionAxis x_, y_;
   PositionSeparation separation_;  // of y
@@ -43,7 +42,8 @@ class PositionFilter {
   double unseen_turn_ = 0;                   // 1 sigma of direction_ from turns that were not measured, rad
   std::optional<Eigen::Vector2d> velocity_;  // along and across the runway, m/s
   double width_ = 0;                         // last seen, m
-  double y_seen_ = 0, y_unseen_ = 0;         // for how long y is measured, and has not been since, s
+  double y_carried_ = 0;                     // s since the last measurement of y
+  bool y_contradicted_ = false;              // by its sources, in that measurement
 };
 
 }  // namespace uav_landing

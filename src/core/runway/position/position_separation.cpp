@@ -3,7 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/limits.h"
+
 namespace uav_landing {
+namespace {
+
+constexpr Sigmas kContradicts(5);
+
+}  // namespace
 
 PositionSeparation::PositionSeparation(const KalmanHeightParameters& parameters) : factors_(parameters) {}
 
@@ -23,6 +30,13 @@ void PositionSeparation::update(const CentreSolutions& seen, const Height& heigh
 
 void PositionSeparation::forgetAbove(double stddev) {
   for (PositionAxis& axis : without_) axis.forgetAbove(stddev);
+}
+
+bool PositionSeparation::contradicts(double y, double matters) const {
+  return std::any_of(without_.begin(), without_.end(), [&](const PositionAxis& axis) {
+    return axis.known() &&
+           std::abs(y - axis.value()) > std::max(matters, kContradicts.bound(axis.variance()));
+  });
 }
 
 double PositionSeparation::protectionLevel(double y, double variance) const {

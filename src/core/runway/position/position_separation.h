@@ -27,6 +27,9 @@ class PositionSeparation {
   void update(const CentreSolutions& seen, const Height& height, double seconds);
   void forgetAbove(double stddev);
 
+  /// Whether a position without one of the sources contradicts y. matters: difference that may remain, m.
+  bool contradicts(double y, double matters) const;
+
   /// Of the position y with this variance, m, m^2. Not known while nothing tells the position without one of
   /// the sources.
   double protectionLevel(double y, double variance) const;

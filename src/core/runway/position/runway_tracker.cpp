@@ -124,7 +124,14 @@ ApproachAngleResult::Runway RunwayTracker::process(const RectifiedView& left,
   predict(&axes, approach.step);
   findCentre(seconds, axes, direction, height, result);
   findThresholdLine(seconds, left, axes, result);
-  return result;
+  const double doubt = approach.other_runway_probability;
+  if (result.failure || doubt <= kLargestDoubtOfEdges) return result;
+  // It is followed all the same, as the next pairs may show what it is.
+  ApproachAngleResult::Runway refused;
+  refused.failure = refused.threshold_failure = {
+      Reason::kNoRunway, text("the edges may be those of something else, with a probability of ",
+                              rounded(doubt), ", at most ", kLargestDoubtOfEdges, " allowed")};
+  return refused;
 }
 
 void RunwayTracker::predict(const GroundAxes* axes, const ApproachAngleResult::Motion& step) {

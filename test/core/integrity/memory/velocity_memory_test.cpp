@@ -52,6 +52,18 @@ TEST(VelocityMemory, AStepOfAPeriodTooLongOrToTheOtherCameraOrBackwardsContradic
   }
 }
 
+TEST(VelocityMemory, OnlyStepsThatAgreeCountAfterAContradiction) {
+  VelocityMemory memory = known();
+  EXPECT_GT(memory.agreed(), 1e3);
+  fly(memory, stepOf(1.4 * kForward));
+  memory.skip(2);
+  EXPECT_EQ(memory.agreed(), 0);
+  for (int i = 0; i < 3; ++i) fly(memory, stepOf(kForward));
+  EXPECT_NEAR(memory.agreed(), 3 * kT, 1e-9);
+  fly(memory, stepOf(3 * kForward));
+  EXPECT_EQ(memory.agreed(), 0);
+}
+
 TEST(VelocityMemory, WhatAnAircraftDoesIsNoContradiction) {
   constexpr double kGravity = 9.81;
   VelocityMemory memory = known();
